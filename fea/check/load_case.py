@@ -26,7 +26,7 @@ from alula.fea.links.second_order import NEGLIGIBLE
 from alula.fea.links.solid_result import link_task
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, with_growth
 from alula.fea.outcomes.result import LinkResult
-from alula.fea.outcomes.unloaded import acts, load_size
+from alula.fea.outcomes.unloaded import acts
 from alula.fea.refine.beyond_meshes import OpenRanges
 from alula.fea.refine.link_series import STRESS
 from alula.fea.refine.refinement import RefinedSolid
@@ -36,6 +36,7 @@ from alula.fea.superposition.link_answers import LinkAnswers
 from alula.fea.superposition.solid_shares import Shares, solid_shares
 from alula.loads.case.case import Case
 from alula.loads.case.connection_rules import turned_by_drive
+from alula.loads.records.applied import load_size
 
 SolvedAnswers = Mapping[str, Shares]
 """Cause -> what it makes of the numbers of a link on its solid."""

@@ -24,13 +24,13 @@ from alula.fea.common.reason import Reason
 from alula.fea.links.on_axis import on_axis
 from alula.fea.links.second_order import second_order_loads
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
-from alula.fea.outcomes.unloaded import load_size, without_rounding
+from alula.fea.outcomes.unloaded import without_rounding
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.bodies.body import Body, hand_section, no_beam, reference_line
 from alula.geometry.materials.material import Material
 from alula.loads.case.case import Case
 from alula.loads.case.forks import apart
-from alula.loads.records.applied import Load
+from alula.loads.records.applied import Load, load_size
 from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]

@@ -19,7 +19,7 @@ from alula.fea.common.verdict import CheckOutcome, Quantity
 from alula.loads.acting.acting import loads_of
 from alula.loads.acting.load_line import ForceOnLine
 from alula.loads.case.case import Case
-from alula.loads.records.applied import BodyForce, LineLoad, Load, PointLoad
+from alula.loads.records.applied import LineLoad, load_size, wrench_size
 from alula.loads.records.check_spec import SafetyFactorCheck
 from alula.loads.states.actions import lasting, stated_loads
 
@@ -27,30 +27,6 @@ Real = NDArray[np.float64]
 
 SHARE = 1e-9
 """Share of the stated loads below which a force is rounding: 16 digits, of which a near dead point costs 6."""
-
-
-def load_size(loads: Iterable[Load], length: float) -> float:
-    """Return the largest of the loads' sizes but for weight and inertia, which act inside their link anyway.
-
-    Parameters
-    ----------
-    loads : iterable of Load
-    length : float
-        By which moments are divided [mm].
-
-    Returns
-    -------
-    float
-        [N]
-    """
-    sizes = [0.0]
-    for load in loads:
-        if isinstance(load, PointLoad):
-            sizes.append(_size(load.wrench, length))
-        elif not isinstance(load, BodyForce):
-            most = max(float(np.linalg.norm(end)) for end in (load.at_start, load.at_end))
-            sizes.append(most * (load.end - load.start))
-    return max(sizes)
 
 
 def acts(loads: LinkLoads, size: float, length: float) -> bool:
@@ -74,7 +50,7 @@ def acts(loads: LinkLoads, size: float, length: float) -> bool:
         np.any(values) for values in (force.specific_force, force.angular_acceleration, force.angular_speed_squared)
     ):
         return True
-    found = [_size(wrench, length) for _, wrench in loads.wrenches]
+    found = [wrench_size(wrench, length) for _, wrench in loads.wrenches]
     found += [float(np.max(np.abs(couple.torque))) / length for couple in loads.couples]
     return max([*found, _spread(loads.lines)], default=0.0) > SHARE * size
 
@@ -98,13 +74,6 @@ def without_rounding(loads: LinkLoads, size: float, length: float) -> LinkLoads:
         return loads
     nothing = loads.with_wrenches(np.zeros_like(wrench) for _, wrench in loads.wrenches)
     return replace(nothing, couples=(), lines=(), inertia=None)
-
-
-def _size(wrench: Real, length: float) -> float:
-    """Largest force [N] or moment over a length of a wrench (..., 6) at any pose."""
-    return float(
-        max(np.linalg.norm(wrench[..., :3], axis=-1).max(), np.linalg.norm(wrench[..., 3:], axis=-1).max() / length)
-    )
 
 
 def _spread(lines: Sequence[LineLoad]) -> float:

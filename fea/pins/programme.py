@@ -189,7 +189,7 @@ def _least(K: Real, g: Real, radii: Real, close: float, ties: NDArray[np.int64])
         if not len(left):
             break
     gap = unit * _gap(A, b, w, z, every)
-    if not (gap <= max(PROVEN, 100.0 * discs * close) * unit).all():
+    if not (gap <= np.maximum(PROVEN, 100.0 * discs * np.maximum(close, _floor(A))) * unit).all():
         raise CannotRunError(
             f"how pins stand in their holes was not found: the energy may be {float((gap / unit).max()):.1e} of that "
             "of the load too high; state in which links pins are tight, or other clearances"
@@ -224,14 +224,14 @@ def _followed(
     """Variables, multipliers, and of which states the steps have ended."""
     towards, shorter, steps = pace
     w, z = np.zeros_like(b), np.ones((len(b), b.shape[1] // 2 + len(every.ties)))
-    own, a, by = np.arange(len(b)), A, every
+    own, a, by, tolerance = np.arange(len(b)), A, every, np.maximum(close, _floor(A))
     for _ in range(steps):
         pull, inner = z[own], by.inner(w[own])
         slack = _slack(inner)
         force = b[own] - (a @ w[own][:, :, None])[:, :, 0]
         rest = np.abs(by.outer(pull[:, :, None] * inner) - force).max(axis=1)
         mean = (pull * slack).mean(axis=1)
-        going = np.maximum(rest, mean) > close
+        going = np.maximum(rest, mean) > tolerance[own]
         if not going.all():
             own, a, by, inner = own[going], a[going], by[going], inner[going]
             pull, slack, force, mean = pull[going], slack[going], force[going], mean[going]
@@ -250,6 +250,11 @@ def _followed(
     ended = np.ones(len(b), dtype=bool)
     ended[own] = False
     return w, z, ended
+
+
+def _floor(A: Real) -> Real:
+    """Residual (n,) below which rounding leaves nothing to be told, where little load meets much stiffness."""
+    return np.asarray(ROUNDING * np.abs(A).max(axis=(1, 2)))
 
 
 def _gap(A: Real, b: Real, w: Real, z: Real, every: _Discs) -> Real:

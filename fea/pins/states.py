@@ -21,13 +21,17 @@ from alula.fea.pins.clearances import Radii, clearances_of, furthest, head_gaps,
 from alula.fea.pins.holes import RimFrame, faces_of, rims_of
 from alula.fea.pins.programme import InDiscs, least_in_discs, slopes
 from alula.fea.pins.tangent import RimTangent, tangent_of
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.joints.fits import RUNNING, fit
 from alula.loads.case.case import Case
+from alula.loads.records.applied import load_size
 from alula.loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+SLIGHT = 1e-8
+"""Deformation over clearance below which rounding tells more about pins than loads do."""
 LEVELS = (0.0, 0.01, 0.1, 0.5, 1.0)
 """Shares of all that is open at which the search starts, beside the values. These states are kept whether or not some
 couple is largest in them."""
@@ -381,7 +385,23 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
     rims = {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes}
     condensed = RimFrame.of(frame, rims, faces_of(case, frame))
     names = [[(joint, hole.link) for joint in hole.joints] for hole in condensed.holes]
-    return PinStates(rims=condensed, radii=radii_of(open_holes, names, head_gaps(case, condensed.holes)))
+    pins = PinStates(rims=condensed, radii=radii_of(open_holes, names, head_gaps(case, condensed.holes)))
+    _refuse_slight(pins)
+    return pins
+
+
+def _refuse_slight(pins: PinStates) -> None:
+    """Raise where loads are so small beside the links' stiffness that rounding would tell where pins stand."""
+    rims, radii = pins.rims, pins.radii
+    widest = radii.of(np.ones((1, len(radii.value))))[0].max(initial=0.0)
+    size, stiff = (float(np.abs(one).max(initial=0.0)) for one in (rims.g, rims.K))
+    felt = SLIGHT * load_size(rims.frame.loads, max((hole.high - hole.low for hole in rims.holes), default=1.0))
+    if felt < size < SLIGHT * widest * stiff:
+        raise CannotRunError(
+            "how pins stand in their holes was not found: loads are too small for it, since they deform the links by "
+            f"less than {SLIGHT:g} of the clearances; state loads at least {SLIGHT * widest * stiff / size:.0f} times "
+            "as large, since stresses under small loads are in proportion to them"
+        )
 
 
 def unstated(case: Case, pins: PinStates) -> tuple[str, ...]:

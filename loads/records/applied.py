@@ -3,7 +3,7 @@
 Every record serves one pose or n of them, along a leading axis of its arrays, in global axes or in its link's own.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, TypeVar
 
@@ -352,6 +352,50 @@ def _with(load: AnyLoad, **changes: Any) -> AnyLoad:
     changed: Any = load
     found: AnyLoad = replace(changed, **changes)
     return found
+
+
+def load_size(loads: Iterable[Load], length: float) -> float:
+    """Return the largest of the loads' sizes but for weight and inertia, which act inside their link anyway.
+
+    Parameters
+    ----------
+    loads : iterable of Load
+    length : float
+        By which moments are divided [mm].
+
+    Returns
+    -------
+    float
+        [N]
+    """
+    sizes = [0.0]
+    for load in loads:
+        if isinstance(load, PointLoad):
+            sizes.append(wrench_size(load.wrench, length))
+        elif not isinstance(load, BodyForce):
+            most = max(float(np.linalg.norm(end)) for end in (load.at_start, load.at_end))
+            sizes.append(most * (load.end - load.start))
+    return max(sizes)
+
+
+def wrench_size(wrench: Real, length: float) -> float:
+    """Return the largest force or moment over a length of a wrench at any pose.
+
+    Parameters
+    ----------
+    wrench : ndarray, shape (..., 6)
+        [N], [N mm]
+    length : float
+        By which moments are divided [mm].
+
+    Returns
+    -------
+    float
+        [N]
+    """
+    return float(
+        max(np.linalg.norm(wrench[..., :3], axis=-1).max(), np.linalg.norm(wrench[..., 3:], axis=-1).max() / length)
+    )
 
 
 def chosen(record: Any, poses: Any) -> Any:

@@ -6,6 +6,7 @@ import tomllib
 import numpy as np
 import pytest
 from arm_case import ARM
+from edited_cases import edited
 
 from alula.fea.beam.cut_free import link_loads
 from alula.fea.check.run import check_case
@@ -14,6 +15,7 @@ from alula.fea.links.solid_result import link_task
 from alula.fea.solid.solution import solve_solid
 from alula.fea.solid.stress import stress_field, von_mises
 from alula.fea.standing.case_statics import solve_case_statics
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.meshing.mesh import MeshSettings, mesh_body
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.records.bearing import WIDE
@@ -108,3 +110,37 @@ def test_factors_of_a_linkage_are_in_proportion_however_small_its_load():
 def test_one_thread_repeats_to_the_last_bit_and_two_to_rounding(solid):
     np.testing.assert_array_equal(by_solid(), solid)
     np.testing.assert_allclose(by_solid(threads=2), solid, rtol=1e-9)
+
+
+LAYERED = (
+    'layer_spacing="6 mm"',
+    *(f"links.{link}.layer={layer}" for link, layer in (("base", 0), ("crank", 1), ("coupler", 0), ("rocker", 1))),
+    "load_cases.lift.own_weight=false",
+)
+
+
+def pressed(force):
+    return edited(
+        "four-bar", (*LAYERED, f'load_cases.lift.forces=[{{link="rocker", at="P", force=["0 N", "-{force}"]}}]')
+    )
+
+
+def test_small_loads_on_layers_stress_links_in_proportion():
+    """Links hardly deform, so that pins stand as the clearances let them, whatever the load."""
+    found = {}
+    for force, newton in (("0.1 mN", 1e-4), ("0.1 uN", 1e-7)):
+        links = check_case(pressed(force), fidelity="beam").load_cases["lift"].links
+        found[force] = [1.0 / (link.safety_factor.low * newton) for link in links.values()]
+    assert len(found["0.1 uN"]) == 3
+    np.testing.assert_allclose(found["0.1 uN"], found["0.1 mN"], rtol=0.015)
+
+
+@pytest.mark.parametrize("force", ["0.01 uN", "5e-12 N"])
+def test_loads_that_rounding_hides_between_layers_are_refused(force):
+    with pytest.raises(CannotRunError, match="loads are too small for it"):
+        check_case(pressed(force), fidelity="beam")
+
+
+def test_no_load_between_layers_is_none():
+    link = check_case(pressed("0 N"), fidelity="beam").load_cases["lift"].links["crank"]
+    assert link.safety_factor.low == np.inf

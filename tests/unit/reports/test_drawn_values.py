@@ -106,8 +106,8 @@ def test_the_safety_factor_over_the_motion():
     links = {"crank": link("crank", 40.0, stresses["crank"]), "rod": link("rod", 60.0, stresses["rod"])}
     checks = [SimpleNamespace(subject=Subject.link("rod"), quantity=Quantity.SAFETY_FACTOR, limit=1.7)]
     result = SimpleNamespace(
-        case=SimpleNamespace(load_cases={"turn": None, PUSHED: None}), links=links, checks=checks, drive_angles=angles, angles=angles,
-        drive=SimpleNamespace(link="crank"),
+        case=SimpleNamespace(load_cases={"turn": None, PUSHED: None}), links=links, checks=checks,
+        drive_angles=angles, angles=angles, drive=SimpleNamespace(link="crank"),
         moved=SimpleNamespace(motion=SimpleNamespace(coordinate="crank", instants=None)),
     )  # fmt: skip
     picture = envelope_figure(result)
