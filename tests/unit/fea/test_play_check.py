@@ -50,6 +50,7 @@ def rocker(clearance: str, coupler: str = "60 mm") -> LoadCaseResult:
     """The four-bar of 20, 60, 40 and 60 mm with a force at its rocker's end, and play at B."""
     data = tomllib.loads(TOML)
     data["joints"]["B"]["clearance"] = clearance
+    data["links"]["coupler"] |= {"part": data["links"]["rocker"]["part"]}
     data["links"]["coupler"]["points"]["B"] = [coupler, "0 mm"]
     data["load_cases"]["turn"] = {"forces": [{"link": "rocker", "at": "P", "force": ["1 N", "-3 N"]}]}
     return check_case(validate(data), fidelity="beam").load_cases["turn"]
@@ -110,6 +111,17 @@ def test_bands_hold_the_linkage_with_another_coupler() -> None:
     assert record["clearances"] == {"B": 0.8}
     [tip] = [entry for entry in record["points"] if entry["point"] == "P"]
     assert tip["free_motion"] == pytest.approx(play.free_motion("rocker", "P"))
+
+
+def test_the_displacement_of_a_link_between_two_pins_has_a_band_though_nothing_bends_it() -> None:
+    """Its shares are of what stretches, turns and gives way at its eyes; those of its bending are of rounding."""
+    plain, loose = (rocker(play).links["coupler"].displacement_max for play in ("0 mm", "0.8 mm"))
+    assert 0.0 < plain.high / plain.low < 10.0
+    assert loose.low < plain.low < plain.high < loose.high < 10.0 * plain.high
+    for length in ("59.6 mm", "60.4 mm"):
+        other = rocker("0 mm", length).links["coupler"].displacement_max
+        assert loose.low <= other.low * (1.0 + 1e-3)
+        assert other.high <= loose.high * (1.0 + 1e-3)
 
 
 def test_play_that_reaches_a_dead_point_leaves_forces_without_end() -> None:
