@@ -32,7 +32,7 @@ from alula.geometry.base.errors import CannotRunError
 Real = NDArray[np.float64]
 
 CLOSE = 1e-11
-"""Residual at which the steps end."""
+"""Residual at which the steps end, unless the rounding of A leaves more."""
 PROVEN = 1e-8
 """Gap between the value and its lower bound, over the largest entry of b, that is taken."""
 ROUNDING = 1e-15
