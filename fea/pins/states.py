@@ -385,13 +385,22 @@ def pin_states(case: Case, frame: LinkageFrame) -> PinStates | None:
     rims = {hole: rims_of(case, *hole) for one in open_holes for hole in one.holes}
     condensed = RimFrame.of(frame, rims, faces_of(case, frame))
     names = [[(joint, hole.link) for joint in hole.joints] for hole in condensed.holes]
-    pins = PinStates(rims=condensed, radii=radii_of(open_holes, names, head_gaps(case, condensed.holes)))
-    _refuse_slight(pins)
-    return pins
+    return PinStates(rims=condensed, radii=radii_of(open_holes, names, head_gaps(case, condensed.holes)))
 
 
-def _refuse_slight(pins: PinStates) -> None:
-    """Raise where loads are so small beside the links' stiffness that rounding would tell where pins stand."""
+def refuse_slight(pins: PinStates) -> None:
+    """Refuse loads that are so small beside the links' stiffness that rounding tells where pins stand.
+
+    Parameters
+    ----------
+    pins : PinStates
+        Under loads that are judged; at a pose of a motion at which hardly anything acts, nothing depends on pins.
+
+    Raises
+    ------
+    CannotRunError
+        With how much larger they must be.
+    """
     rims, radii = pins.rims, pins.radii
     widest = radii.of(np.ones((1, len(radii.value))))[0].max(initial=0.0)
     size, stiff = (float(np.abs(one).max(initial=0.0)) for one in (rims.g, rims.K))

@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from alula.fea.pins.states import refuse_slight
 from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.fea.standing.rubbing import ENDS, End, at_end, presses_of, with_friction
 from alula.geometry.base.errors import CaseError
@@ -97,6 +98,9 @@ def solve_case_statics(case: Case, name: str = "", end: End = "stated") -> CaseS
         for load_case, stated in case.load_cases.items()
     }
     forces = {load_case: joint_forces(standing[load_case].case, pose, loads[load_case]) for load_case in loads}
+    for one in forces.values():
+        if one.pins is not None:
+            refuse_slight(one.pins)
     work, presses = {}, {}
     if rubbing_joints(case):
         for load_case, plain in forces.items():
