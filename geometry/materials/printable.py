@@ -51,5 +51,22 @@ def is_solid_stock(material: Material) -> bool:
     return not is_printed(material) and bool(_OTHERWISE & _words(material))
 
 
+def lies_in_layers(part: Printable, material: Material) -> bool:
+    """Return whether a part is printed in layers that count, whatever it is printed of.
+
+    Parameters
+    ----------
+    part : Printable
+    material : Material
+
+    Returns
+    -------
+    bool
+        True by the card's strength across layers; by the part's direction of building, unless the material has none.
+    """
+    stated = part.build_direction is not None and not is_solid_stock(material)
+    return stated or material.strength_across_layers is not None
+
+
 def _words(material: Material) -> frozenset[str]:
     return frozenset(re.findall(r"[a-z]+", material.title.lower()))

@@ -8,7 +8,7 @@ from contextlib import suppress
 
 from alula.geometry.base.errors import CaseError
 from alula.geometry.materials.plausible import is_plastic
-from alula.geometry.materials.printable import is_printed
+from alula.geometry.materials.printable import is_printed, lies_in_layers
 from alula.geometry.parts.disc import Disc
 from alula.geometry.parts.plate import Plate
 from alula.geometry.parts.straight import Straight
@@ -76,7 +76,7 @@ def unlike_ductile(case: CoreCase, link: str) -> str:
     material = case.all_materials[part.material]
     if material.brittle:
         return f"'{part.material}' is brittle: it breaks where its stress is largest, before it flows"
-    if material.strength_across_layers is not None or part.build_direction is not None:
+    if lies_in_layers(part, material):
         return "it is printed in layers, which come apart before it flows"
     return ""
 
@@ -185,9 +185,9 @@ def eye_caveats(case: CoreCase) -> Iterator[Caveat]:
 def _check_kind(case: CoreCase, entry: str, link: str) -> None:
     part = case.part_of(link)
     card, material = part.material, case.all_materials[part.material]
-    printed = part.build_direction is not None or is_printed(material)
+    layers = lies_in_layers(part, material)
+    printed = layers or is_printed(material)
     if printed or material.brittle or is_plastic(card, material):
-        layers = material.strength_across_layers is not None or part.build_direction is not None
         what = "printed" if printed else "brittle" if material.brittle else "a plastic"
         how = (
             'a check of type "safety-factor", which sets tension across its layers and shear along them against theirs'

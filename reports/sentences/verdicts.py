@@ -152,7 +152,7 @@ def tier_lines(tiers: Iterable[TierVerdict], *, several: bool) -> tuple[str, ...
 def _of_tier(one: TierVerdict, *, several: bool) -> str:
     check = one.decides
     if check is None and not one.links:
-        return "not asked of brittle links, which break before they yield."
+        return "not asked of links that break before they yield."
     if check is None:
         return f"not asked; a check of type {one.asks} asks for it."
     stands, asked = _stands(check, several=several), len(one.links) - len(one.unasked)

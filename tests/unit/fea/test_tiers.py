@@ -171,9 +171,14 @@ def test_brittle_links_have_no_elastic_tier(mixed):
 
 def test_a_link_printed_in_layers_is_never_said_to_want_a_check_that_it_is_refused():
     """Its layers come apart before it flows, whatever its card: its safety factor is of breaking."""
-    laid = [f"parts.{part}.build_direction=[0, 0, 1]" for part in ("lever", "rod")]
+    laid = [
+        (f'parts.{part}.material="{card}"', f"parts.{part}.build_direction=[0, 0, 1]")
+        for part, card in (("lever", "pa12-sintered"), ("rod", "resin-tough"))
+    ]
+    stock = edited("spring-pedal", (*CHECKS[:1], "parts.rod.build_direction=[0, 0, 1]"))
+    assert tiers_of(stock, [collapse(PEDAL, 2.0)])[1].asks == "plastic-collapse"
     strength = [f'checks.{name}={{type="safety-factor", minimum=2}}' for name in ("collapse", "eyes")]
-    one, both = (edited("spring-pedal", (*strength, *some)) for some in (laid[1:], laid))
+    one, both = (edited("spring-pedal", (*strength, *sum(some, ()))) for some in (laid[1:], laid))
     asked = [outcome(PEDAL, 2.5), outcome(ROD, 2.2)]
     elastic, broken = tiers_of(one, asked)
     assert [tier_of(one, check) for check in asked] == [Tier.ELASTIC, Tier.BREAK]
@@ -218,7 +223,7 @@ def test_the_lines_name_what_decides_and_what_asks(ductile, mixed):
     stays = outcome(ROD, 12.0, name="long", quantity=Quantity.SUSTAINED_STRESS, limit=11.0)
     assert lines(ductile, stays)[1] == "Does not break: FAIL, sustained stress of rod 12.0 > 11 MPa."
     assert lines(read_case("four-bar"), outcome(Subject.link("crank"), 7.0)) == [
-        "Stays elastic: not asked of brittle links, which break before they yield.",
+        "Stays elastic: not asked of links that break before they yield.",
         "Does not break: PASS for 1 of 3 links: safety factor of crank 7.00 ≥ 2; not asked of coupler and rocker.",
     ]
     six = read_case("six-bar")
