@@ -11,6 +11,14 @@ PLANAR = 'layer_spacing="0 mm"'
 """Entry that puts all layers of a case in one plane: for tests of what has nothing to do with layers."""
 
 
+NYLON = (
+    'materials.nylon={title="nylon, printed", density="1100 kg/m^3", youngs_modulus="1.7 GPa", poissons_ratio=0.39, '
+    'yield_strength="40 MPa", ultimate_strength="48 MPa", strength="yield", minimum_safety_factor=2, '
+    "sources={}, status={}}"
+)
+"""Entry of a card that yields before it breaks and is printed: in layers where its part states how it is built."""
+
+
 def edited(name: str, entries: Sequence[str], *, bare: bool = False, fits: bool = True) -> Case:
     """Return a case with entries ``path=value`` as if its file had been edited: missing tables are added.
 

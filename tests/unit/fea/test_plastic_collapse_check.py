@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from edited_cases import edited
+from edited_cases import NYLON, edited
 from plastic_problems import FOUND
 
 from alula.fea.asked.asked import asked, asked_of
@@ -173,14 +173,16 @@ def test_from_the_case_to_the_section(monkeypatch):
     ],
 )
 def test_brittle_and_layered_links_are_refused(entry, says):
+    card = [NYLON, 'checks.eyes={type="mass", maximum="9 kg"}']  # whose eyes have no formula
+    card += [f'parts.{part}.material="nylon"' for part in ("front", "rear")]
     with pytest.raises(CaseError, match=says) as error:
-        edited("knee", [FRONT, entry])
+        edited("knee", [*card, FRONT, entry])
     assert "front" in str(error.value)
     assert str(error.value).endswith("name the other links in links")
-    case = edited("knee", [CHECK, entry])
+    case = edited("knee", [*card, CHECK, entry])
     assert asked_of(case, PlasticCollapseCheck) == ("rear",)
     with pytest.raises(CaseError, match="leave this check out"):
-        edited("knee", [CHECK, entry, entry.replace("front", "rear")])
+        edited("knee", [*card, CHECK, entry, entry.replace("front", "rear")])
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import itertools
 
 import pytest
-from edited_cases import edited
+from edited_cases import NYLON, edited
 from slotted_lever import slotted_lever
 
 from alula.fea.asked.tiers import tier_of, tiers_of
@@ -171,14 +171,12 @@ def test_brittle_links_have_no_elastic_tier(mixed):
 
 def test_a_link_printed_in_layers_is_never_said_to_want_a_check_that_it_is_refused():
     """Its layers come apart before it flows, whatever its card: its safety factor is of breaking."""
-    laid = [
-        (f'parts.{part}.material="{card}"', f"parts.{part}.build_direction=[0, 0, 1]")
-        for part, card in (("lever", "pa12-sintered"), ("rod", "resin-tough"))
-    ]
+    laid = [(f'parts.{part}.material="nylon"', f"parts.{part}.build_direction=[0, 0, 1]") for part in ("lever", "rod")]
+    strength = [f'checks.{name}={{type="safety-factor", minimum=2}}' for name in ("collapse", "eyes")]
+    one = edited("spring-pedal", (NYLON, *strength, laid[0][0], *laid[1]))  # the lever of the same, not in layers
+    both = edited("spring-pedal", (NYLON, *strength, *laid[0], *laid[1]))
     stock = edited("spring-pedal", (*CHECKS[:1], "parts.rod.build_direction=[0, 0, 1]"))
     assert tiers_of(stock, [collapse(PEDAL, 2.0)])[1].asks == "plastic-collapse"
-    strength = [f'checks.{name}={{type="safety-factor", minimum=2}}' for name in ("collapse", "eyes")]
-    one, both = (edited("spring-pedal", (*strength, *sum(some, ()))) for some in (laid[1:], laid))
     asked = [outcome(PEDAL, 2.5), outcome(ROD, 2.2)]
     elastic, broken = tiers_of(one, asked)
     assert [tier_of(one, check) for check in asked] == [Tier.ELASTIC, Tier.BREAK]
