@@ -154,7 +154,8 @@ def displacement_estimate(
     table = np.stack([bent.at(x) for x in np.linspace(first, last, 65)], axis=1)
     table[..., 3] -= (bent.at(line[0])[:, None, 3] + bent.at(line[1])[:, None, 3]) / 2.0
     places = [table[..., :3]]
-    for end, overhang in zip((0, -1), (extent(body)[0] - first, extent(body)[1] - last), strict=True):
+    low, high = extent(body)
+    for end, overhang in ((0, low - first), (-1, high - last)):
         u, v, w, _, turn_y, turn_z = np.moveaxis(table[:, [end]], -1, 0)
         places.append(np.stack([u, v + turn_z * overhang, w - turn_y * overhang], axis=-1))
     axis = np.linalg.norm(np.concatenate(places, axis=1), axis=-1).max(axis=1)

@@ -36,7 +36,7 @@ CLOSE = 1e-11
 PROVEN = 1e-8
 """Gap between the value and its lower bound, over the largest entry of b, that is taken."""
 ROUNDING = 1e-15
-"""Least slack that is told from none."""
+"""Least slack, and least share of the largest entry of A, that is told from none."""
 IDLE = 1e-9
 """Share of the force that moving a pin through its disc would take below which a force is none."""
 PACES = ((0.1, 0.995, 40), (0.5, 0.9, 200))

@@ -6,6 +6,7 @@ and downwards (``alula.fea.pins.aims``, ``alula.fea.pins.ascent``), on the path 
 where rims do not quite touch. All states that are met on the way tell of all of them.
 """
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -408,8 +409,8 @@ def refuse_slight(pins: PinStates) -> None:
     if felt < size < SLIGHT * widest * stiff:
         raise CannotRunError(
             "how pins stand in their holes was not found: loads are too small for it, since they deform the links by "
-            f"less than {SLIGHT:g} of the clearances; state loads at least {SLIGHT * widest * stiff / size:.0f} times "
-            "as large, since stresses under small loads are in proportion to them"
+            f"less than {SLIGHT:g} of the clearances; state loads at least {math.ceil(SLIGHT * widest * stiff / size)} "
+            "times as large, since stresses under small loads are in proportion to them"
         )
 
 

@@ -75,14 +75,13 @@ def tangent_of(radii: Real, v: Real, forces: Real, ties: NDArray[np.int64] = NO_
         if apart[k] < TIGHT:  # both rims are one, and heads bear any couple
             between = (forces[high] - forces[low]) / 2.0
         forces[low], forces[high] = forces[low] + between, forces[high] - between
-    out = np.linalg.norm(v.reshape(-1, 2), axis=1)
-    sizes = np.where(out > 0.0, np.linalg.norm(forces, axis=1), 0.0)  # in the middle of its hole a pin touches nothing
+    sizes, out = np.linalg.norm(forces, axis=1), np.linalg.norm(v.reshape(-1, 2), axis=1)
     largest = float(sizes.max(initial=0.0))
     ways, stiffness, touching = [], [], 0
     for k, (radius, size) in enumerate(zip(rims, sizes, strict=True)):
         if radius < TIGHT:
             continue
-        turns = size > NO_FORCE * largest
+        turns = size > NO_FORCE * largest and out[k] > 0.0  # in the middle of its hole a pin touches nothing
         touching += int(turns)
         x, y = v[2 * k : 2 * k + 2] / out[k] if turns else (0.0, 1.0)
         for way in ((-y, x), (x, y))[: 1 if turns else 2]:

@@ -61,6 +61,14 @@ def test_a_rim_that_does_not_touch_is_free_and_a_pressed_hole_is_closed():
     assert tangent_of(np.zeros(2), np.zeros(4), forces).ways.shape == (4, 0)
 
 
+def test_a_pin_in_the_middle_of_its_hole_is_free_beside_one_that_is_pressed():
+    """Where loads are but rounding, nothing of them presses there; the pressed hole bears its own force."""
+    found = tangent_of(np.array([0.01, 0.0]), np.zeros(4), np.array([1.0, 0.0, 0.0, 3.0]))
+    assert (found.touching, found.force) == (0, 3.0)
+    assert found.stiffness == pytest.approx([0.0, 0.0])
+    assert np.abs(found.ways).sum(axis=1) == pytest.approx([1.0, 1.0, 0.0, 0.0])
+
+
 @pytest.mark.parametrize(("clearance", "apart"), [(0.002, None), (0.01, None), (0.01, 0.002), (0.01, 0.007)])
 @pytest.mark.parametrize("material", [ALUMINIUM, PLA])
 def test_the_tangent_says_how_pins_move_under_a_little_more_load(material, clearance, apart):
