@@ -1,5 +1,6 @@
 """What would change a verdict: factors on loads, strengths, sources of the band, the command that finds a size."""
 
+import math
 import shlex
 from collections.abc import Sequence
 from typing import Any
@@ -144,22 +145,9 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     if change.widest:
         found.append(_of_sources(change, result))
     if not found:
-        found.append(
-            _of_itself(check)
-            if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
-            else "No factor on the loads is told: the number is not in proportion to them, since "
-            + (
-                "springs act."
-                if result.case.sprung
-                else "mean stress counts."
-                if check.quantity is Quantity.FATIGUE_STRESS
-                else "links yield."
-                if check.quantity is Quantity.PERMANENT_SET
-                else "large displacement was not looked at."
-                if result.load_cases[check.load_case].large_displacement.state == "off"
-                else "the shape of the deformed linkage counts."
-            )
-        )
+        alone = check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
+        grows = "All loads may hardly grow." if change.load is not None else _without_factor(check, result)
+        found.append(_of_itself(check) if alone else grows)
     return found
 
 
@@ -186,6 +174,26 @@ def size_command(change: VerdictChange, result: CheckResult) -> str:
         if path != size.entry:
             words += ["--set", shlex.quote(f"{path}={value}")]
     return " ".join(words)
+
+
+def _without_factor(check: CheckOutcome, result: CheckResult) -> str:
+    """Say why no factor on the loads takes a check to its limit."""
+    told = "No factor on the loads is told"
+    if check.value.least_alone:
+        return f"{told}: only a least value of the number is known."
+    if result.case.sprung:
+        why = "springs act"
+    elif check.quantity is Quantity.FATIGUE_STRESS:
+        why = "mean stress counts"
+    elif check.quantity is Quantity.PERMANENT_SET:
+        why = "links yield"
+    elif any(source.kind is SourceKind.PLAY for source in check.value.sources):
+        why = "play of pins, which no load makes less, is part of it"
+    elif result.load_cases[check.load_case].large_displacement.state == "off":
+        why = "large displacement was not looked at"
+    else:
+        why = "the shape of the deformed linkage counts"
+    return f"{told}: the number is not in proportion to them, since {why}."
 
 
 def _of_itself(check: CheckOutcome) -> str:
@@ -229,11 +237,11 @@ def _of_material(change: MaterialChange | None, result: CheckResult, *, passes: 
     if not change.material:
         return [f"All moduli {_rounded(change.needed, up=True)} times as large {verb}."]
     title = result.case.all_materials[change.material].title
-    needed, stated = _rounded(change.needed, up=True), plain(float(f"{change.stated:.4g}"))
-    if float(needed) == float(stated):
+    needed, stated = rounded(change.needed, up=True), float(f"{change.stated:.4g}")
+    if math.isclose(needed, stated):
         return []
     article = "An" if change.what[0] in "aeiou" else "A"
-    return [f"{article} {change.what} of {needed} MPa in place of {stated} MPa ({title}) {verb}."]
+    return [f"{article} {change.what} of {plain(needed)} MPa in place of {plain(stated)} MPa ({title}) {verb}."]
 
 
 def _of_sources(change: VerdictChange, result: CheckResult) -> str:

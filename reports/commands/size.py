@@ -234,10 +234,9 @@ def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None
                 f"vary {printable(path)}: '{printable(text)}' is no range; write for example \"3 mm..8 mm\", or state "
                 "values with --choose"
             )
-        stepped = "/" in text or " by " in text
-        if step and stepped:
-            raise CaseError(f"vary {printable(path)}: '{printable(text)}' has steps of its own; leave --step out")
         found = axis(path, text)
+        if step and found.values:
+            raise CaseError(f"vary {printable(path)}: '{printable(text)}' has steps of its own; leave --step out")
         if not found.values:
             found = axis(path, f"{text} by {step}") if step else found.divided(STEPS)
         axes.append(found)

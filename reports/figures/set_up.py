@@ -91,11 +91,12 @@ def profile_drawing(step: LevelStep) -> Canvas:
     sheet = Canvas(72.0 * WIDTH, len(curves) * (_PLOT + _ABOVE) + _BELOW)
     for k, (label, values, colour) in enumerate(curves):
         top, low = _ABOVE + k * (_PLOT + _ABOVE), min(float(values.min()), 0.0)
-        room = _PAD * (float(values.max()) - low)
+        high = max(float(values.max()), 0.0)
+        room = _PAD * (high - low)
         axes = Axes(
             box=(_LEFT, top, 72.0 * WIDTH - 2.0 * _RIGHT, top + _PLOT),
             x=(float(times[0]), float(times[-1])),
-            y=(low - room, float(values.max()) + room),
+            y=(low - room, high + room),
         )
         axes.scale_y(sheet, label, label_at=_LEFT - 42.0, most=4, grid=True)
         if k == len(curves) - 1:

@@ -84,13 +84,20 @@ def _parts(centre: InstantCentre, moved: CaseMotion, record: Mapping[str, Any]) 
 
 def _where(told: str, motion: Motion, runs: Sequence[tuple[float, float]], rest: str = "") -> Text:
     """Return what is told of runs of poses, with first and last of each, and of the rest."""
-    at, of = (f"{motion.coordinate} = ", "") if motion.instants is None else ("", " of the cycle")
+    of = "" if motion.instants is None else " of the cycle"
+    spans, facts = _spans(motion, runs)
+    return say(f"{told} {spans}{of}{rest}", **facts)
+
+
+def _spans(motion: Motion, runs: Sequence[Sequence[float]]) -> tuple[str, dict[str, Number]]:
+    """Return first and last of runs of poses as a text with places, and the numbers for these."""
+    at = f"{motion.coordinate} = " if motion.instants is None else ""
     facts = {f"end{i}": Number(value, motion.progress_unit, 5) for i, value in enumerate(chain(*runs))}
     spans = [
         f"at {at}{{end{2 * i}}}" if first == last else f"from {at}{{end{2 * i}}} to {{end{2 * i + 1}}}"
         for i, (first, last) in enumerate(runs)
     ]
-    return say(f"{told} {joined(spans)}{of}{rest}", **facts)
+    return joined(spans), facts
 
 
 def _sides(what: str, motion: Motion, ahead: Any, behind: Sequence[tuple[float, float]]) -> Text:
@@ -106,16 +113,14 @@ def _sides(what: str, motion: Motion, ahead: Any, behind: Sequence[tuple[float, 
 
 
 def _stability(what: str, motion: Motion, ahead: Any) -> Text:
-    """Return on which side the load line runs at the first pose, and where that changes."""
+    """Return on which side the load line runs at the first pose, and where on the other."""
     start = Number(float(motion.told(motion.angles[0])), motion.unit, 5)
     if not np.isfinite(ahead[0]):
         return say(f"At {motion.coordinate} = {{start}} no load line runs past {what}", start=start)
     side, state = ("behind", "Not stable") if ahead[0] < 0.0 else ("ahead of", "Stable")
     told = f"{state}: at {motion.coordinate} = {{start}} the load line runs {{ahead}} {side} {what}"
     facts = {"start": start, "ahead": Number(abs(float(ahead[0])), "mm")}
-    turn = np.flatnonzero((ahead < 0.0) != (ahead[0] < 0.0))
-    turn = turn[np.isfinite(ahead[turn])]
-    if len(turn):
-        told += f", and {'ahead of' if ahead[0] < 0.0 else 'behind'} it from {{turn}} on"
-        facts["turn"] = Number(float(motion.told(motion.angles[turn[0]])), motion.unit, 5)
+    if runs := stretches(motion, ahead >= 0.0 if ahead[0] < 0.0 else ahead < 0.0):
+        spans, ends = _spans(motion, runs)
+        told, facts = f"{told}, and {'ahead of' if ahead[0] < 0.0 else 'behind'} it {spans}", facts | ends
     return say(told, **facts)

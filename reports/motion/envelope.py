@@ -137,9 +137,10 @@ def _motion(result: EnvelopeResult) -> Section:
         f"{'standing still' if result.drive is None else f'driven at {result.drive.link}'}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses were evaluated"
     )
-    if (cycle := result.case.cycle) is not None:
-        told_range = f"Over the cycle of {cycle.file}: f{told_range[1:]}"
-    parts: list[Part] = [say(told_range, first=first, last=last)]
+    cycle = result.case.cycle
+    if cycle is not None:
+        told_range = f"Over the cycle of {{file}}: f{told_range[1:]}"
+    parts: list[Part] = [say(told_range, first=first, last=last, file="" if cycle is None else cycle.file)]
     if result.idle:
         parts.append(Text(f"Links without load: {', '.join(result.idle)}."))
     if result.warnings:

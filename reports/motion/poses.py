@@ -54,7 +54,7 @@ def range_text(moved: CaseMotion) -> Text:
     first, last = (Number(float(motion.told(end)), stated=True) for end in ends_of(motion.angles))
     took = {} if motion.times is None else {"duration": Number(float(motion.times[-1]), "s")}
     cycle = moved.case.cycle
-    whole = "From" if cycle is None else f"Over the cycle of {cycle.file}: from"
+    whole, of = ("From", {}) if cycle is None else ("Over the cycle of {file}: from", {"file": cycle.file})
     return say(
         f"{whole} {motion.coordinate} = {{first}} to {{last}} {motion.unit}, driven at {moved.drive.link}, in "
         f"{len(motion.angles)} poses{' and {duration}' if took else ''}; largest gap of a loop {{gap}} of the longest "
@@ -63,6 +63,7 @@ def range_text(moved: CaseMotion) -> Text:
         last=last,
         **took,
         gap=Number(motion.residual, "", 1),
+        **of,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from alula.fea.sizing.candidates import Place
 from alula.fea.sizing.least import Sized
 from alula.fea.sizing.lightest import Gain, Lightest
-from alula.fea.study.margin import margin, nearest, sense_of
+from alula.fea.study.margin import margin, nearest
 from alula.fea.study.numbers import VariantNumber, VariantResult
 from alula.reports.sections.data import entries
 from alula.reports.sections.section import Column, Folded, Mark, Number, Part, Section, Table, Text, say, words
@@ -75,10 +75,13 @@ def _limited(found: Sized, step: int | None) -> Iterator[Text]:
     facts: dict[str, Any] = {"at": found.values[step], **checked(limit)}
     told = "At {at} {what} {value} ({limit}) limits it"
     if gain is not None and step < len(found.values) - 1:
-        verb = "raises" if sense_of(limit).value == "≥" else "lowers"
+        verb = "raises" if gain >= 0.0 else "lowers"
         other = found.values[step + (1 if found.rising else -1)]
         share = Number(abs(gain), "%", digits=2, factor=100.0, derived=True)
-        told, facts = told + f"; {{other}} {verb} it by some {{share}}", facts | {"other": other, "share": share}
+        told, facts = (
+            told + f"; {{other}} {verb} its margin by some {{share}}",
+            facts | {"other": other, "share": share},
+        )
     yield say(told, **facts)
 
 
@@ -116,7 +119,7 @@ def _cost(found: Lightest, place: Place) -> Number | None:
 
 def _gained(found: Lightest, gain: Gain) -> str:
     model = ", by hand calculation" if gain.by_hand else ""
-    changes = f"changes it by {percent(gain.share)} and the {found.objective.quantity} by {percent(gain.cost)}"
+    changes = f"changes its margin by {percent(gain.share)} and the {found.objective.quantity} by {percent(gain.cost)}"
     return f"; {gain.path} = {gain.value} {changes}{model}"
 
 

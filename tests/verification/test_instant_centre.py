@@ -99,7 +99,7 @@ def test_sentences_and_record():
     stable, falls = told["Load case heel-strike"], told["Load case late-stance"]
     assert stable.startswith("Stable: at thigh = −25.000 deg the load line runs 67.85 mm ahead of the instant centre")
     assert falls.startswith("Not stable: at thigh = −25.000 deg the load line runs 10.82 mm behind the instant centre")
-    assert stable.endswith("and behind it from 25.000 deg on.")
+    assert stable.endswith("and behind it from thigh = 25.000 deg to 65.000 deg.")
     record = section.data["instant_centre"]
     assert (record["link"], record["against"]) == ("thigh", "shank")
     assert record["load_cases"]["late-stance"]["behind"][0][0] == pytest.approx(-25.0)

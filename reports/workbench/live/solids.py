@@ -212,7 +212,7 @@ class _Run:
                 self._told("verdict", {"revision": self._revision, **told})
         elif event == "sentence":
             self._sentence = told["sentence"]
-        elif event == "failed":
+        elif event in ("failed", "notice"):  # a notice is of a mistake of alula's own
             self._end("failed", told["sentence"])
             return
         else:  # the stage is done

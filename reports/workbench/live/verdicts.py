@@ -206,7 +206,7 @@ def _offers(result: CheckResult, text: str) -> Iterator[Plain]:
         yield _offer("It passes with another section", case, sizes)
     elif link in case.checked_links and [one.part for one in case.links.values()].count(case.links[link].part) > 1:
         document, part = Document(text), str(case.links[link].part)
-        own = next(name for k in count(2) if (name := f"{part}-{k}") not in case.parts)
+        own = next(free for k in count(2) if (free := f"{part}-{k}") not in case.parts)
         alone = [
             {"op": "set", "path": ["parts", own], "value": document.tables()["parts"][part]},
             {"op": "set", "path": ["links", link, "part"], "value": own},

@@ -122,7 +122,7 @@ export function mount(holder, store) {
     const { whole, linear, solids } = store.state.verdict;
     const hand = whole ?? linear;
     if (!hand || !solids) return null;
-    const keyOf = (check) => [check.check, check.subject, check.load_case].join("\n");
+    const keyOf = (check) => [check.check, check.quantity, check.subject, check.load_case].join("\n");
     const by = new Map(hand.checks.map((check) => [keyOf(check), check]));
     const pairs = solids.checks.map((solid) => [by.get(keyOf(solid)), solid]).filter(([one, other]) => one && other.value > 0 && one.value > 0);
     if (!pairs.length) return null;

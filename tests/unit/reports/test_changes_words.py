@@ -9,6 +9,7 @@ from html_pages import Page
 from rich.console import Console
 from told import print_result, render, result_record
 
+from alula.fea.common.band import Band
 from alula.fea.common.change import MaterialChange, SizeRange, VerdictChange
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import LINKAGE, Quantity, Verdict
@@ -139,3 +140,22 @@ def test_page_console_and_record_tell_the_same(result):
         assert sentence in text
         assert sentence in page.words
     assert page.source.index('id="changes"') < page.source.index("<nav")
+
+
+def test_a_modulus_of_a_metal_is_told_in_full(result, check):
+    """Above 1e5 numbers have a power of ten, which is no stated modulus; what is as stated is not told."""
+    failed = replace(check, verdict=Verdict.FAIL)
+    stiffer = MaterialChange(what="modulus", material="pvc-paredes-2018", stated=210000.0, needed=231400.0)
+    text = told(result, VerdictChange(check=failed, material=stiffer))
+    assert "A modulus of 232000 MPa in place of 210000 MPa (Rigid PVC" in text
+    same = replace(stiffer, needed=210000.0)
+    assert "modulus" not in told(result, VerdictChange(check=failed, load=0.5, material=same))
+
+
+def test_why_no_factor_is_told_is_true(result, check):
+    passed = replace(check, verdict=Verdict.PASS)
+    assert told(result, VerdictChange(check=passed, load=1.004)) == "All loads may hardly grow."
+    least = replace(passed, value=Band.at_least(2.0))
+    assert told(result, VerdictChange(check=least)).endswith("only a least value of the number is known.")
+    loose = replace(passed, value=replace(passed.value, sources=(Source(kind=SourceKind.PLAY),)))
+    assert "since play of pins" in told(result, VerdictChange(check=loose))

@@ -116,6 +116,7 @@ ENDS = {
     "crashed": 'sys.exit("Fatal: out of luck")',
     "killed": "os.kill(os.getpid(), 9)",
     "nonsense": 'print("no JSON", flush=True); time.sleep(60)',
+    "mistaken": 'tell("notice", sentence="MemoryError: no room"); print(json.dumps({"done": True}), flush=True)',
 }
 
 
@@ -130,6 +131,7 @@ def child(monkeypatch, rest):
         ("crashed", "ended by itself (status 1: Fatal: out of luck)"),
         ("killed", "ended by itself (status -9: it left no message)"),
         ("nonsense", "could not be followed"),
+        ("mistaken", "MemoryError: no room"),
     ],
 )
 def test_a_check_that_fails_says_why(monkeypatch, end, sentence):
