@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from alula.fea.common.verdict import Verdict
 from alula.fea.sizing.search import Search
 from alula.fea.study.margin import margin
-from alula.fea.study.numbers import VariantNumber, VariantResult
+from alula.fea.study.numbers import DRIVING, VariantNumber, VariantResult
 from alula.loads.plans.axis import Axis
 
 Place = tuple[int, ...]
@@ -63,7 +63,7 @@ class Objective:
             None where none is known.
         """
         known = [number for number in self.numbers(result) if not math.isnan(number.value)]
-        return (min if self.largest else max)(known, key=lambda number: number.value, default=None)
+        return (min if self.largest else max)(known, key=_size, default=None)
 
     def cost(self, result: VariantResult) -> float:
         """Return what is to be small.
@@ -78,7 +78,11 @@ class Objective:
             Infinite where the number is not known.
         """
         number = self.number(result)
-        return math.inf if number is None else -number.value if self.largest else number.value
+        return math.inf if number is None else -_size(number) if self.largest else _size(number)
+
+
+def _size(number: VariantNumber) -> float:
+    return abs(number.value) if number.subject == DRIVING else number.value
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -217,12 +217,20 @@ def _next(steps: _Steps, order: Sequence[int], guess: int, holds: "Callable[[Ver
     last = max((place for place, held in told.items() if not held and place < first), default=-1)
     if first == len(order):
         places = [min(last + max(last - guess, 1), len(order) - 1)]
+        if places[0] in told:  # the far end is no case, though some before it may be one that passes
+            failed = max((place for place in told if steps.verdict(order[place]) is not None), default=-1)
+            places = _between(steps, failed, min((place for place in told if place > failed), default=failed))
     elif last == -1:
         places = [max(first - max(guess - first, 1), 0)]
     else:
-        pieces = min(steps.workers + 1, first - last)
-        places = [last + (first - last) * i // pieces for i in range(1, pieces)]
+        places = _between(steps, last, first)
     return [order[place] for place in places if place not in told]
+
+
+def _between(steps: _Steps, last: int, first: int) -> list[int]:
+    """Return where to split what lies between two places, into one piece more than there are workers."""
+    pieces = min(steps.workers + 1, first - last)
+    return [last + (first - last) * i // pieces for i in range(1, pieces)]
 
 
 def _log_margin(result: VariantResult) -> float:

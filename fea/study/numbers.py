@@ -18,11 +18,14 @@ from alula.loads.case.layers import pin_masses
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from alula.loads.states.masses import part_masses, rough_masses
+from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.rounding import without_rounding
 
 State = Literal["done", "refused", "crashed"]
 Weighs = bool | Literal["rough"]
 LINKED = str(LINKAGE)
+DRIVING = "the drive"
+"""Whose torque or force has a sense of its own: small is what is small in size."""
 DEAD_POINT = "distance to a dead point"
 
 
@@ -167,12 +170,15 @@ def of_check(result: CheckResult, *, weighs: Weighs) -> tuple[Verdict, tuple[Var
         found += map(VariantNumber.of, load_case.checks)
         reactions = without_rounding(load_case.large_displacement.reactions or load_case.forces.reactions)
         largest = max((joint.magnitude for joint in reactions.joints.values()), default=0.0)
-        found.append(VariantNumber.exact("drive torque", "N·mm", reactions.driving[0], "the drive", name))
+        drive = reactions.drive
+        effort = DriveEffort.TORQUE if drive is None else drive.effort(result.case.linkage)
+        driving = reactions.driving[effort is DriveEffort.FORCE]
+        found.append(VariantNumber.exact(f"drive {effort.word}", effort.unit, driving, DRIVING, name))
         found.append(VariantNumber.exact("largest joint force", "N", largest, LINKED, name))
         found += _of_linkage(load_case.linkage, name)
-    distance = next(iter(result.load_cases.values())).linkage.dead_point_distance
-    if distance is not None:
-        found.append(VariantNumber.exact(DEAD_POINT, "1", distance, LINKED))
+    distances = [load_case.linkage.dead_point_distance for load_case in result.load_cases.values()]
+    if known := [distance for distance in distances if distance is not None]:
+        found.append(VariantNumber.exact(DEAD_POINT, "1", min(known), LINKED))
     return result.verdict, (*found, *_masses(result.case, weighs=weighs))
 
 

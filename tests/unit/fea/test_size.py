@@ -66,6 +66,18 @@ RULES = {
     "hand calculation far off": (lambda d, f: ((d / (4.0 if f == "beam" else 8.1)) ** 3, 0.0), 8.25, 8.0, []),
     "falling": (lambda d, f: ((6.1 / d) ** 3, 0.0), 6.0, 6.25, []),
     "refused below 5 mm": (lambda d, f: None if d < 5.0 else (d / 4.0, 0.0), 5.0, None, []),
+    "refused from 5.25 mm on": (
+        lambda d, f: None if d > 5.0 else (d / (3.8 if f == "beam" else 4.6), 0.0),
+        4.75,
+        4.5,
+        [],
+    ),
+    "no solid from 5.25 mm on": (
+        lambda d, f: (d / 3.8, 0.0) if f == "beam" else None if d > 5.0 else (d / 4.9, 0.0),
+        5.0,
+        4.75,
+        [],
+    ),
     "passes": (lambda d, f: (d, 0.0), 3.0, None, []),
     "fails": (lambda d, f: (d / 10.0, 0.0), None, 9.0, []),
 }

@@ -3,6 +3,7 @@
 import re
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -89,3 +90,14 @@ def test_a_couple_alone_is_no_rounding(slider_text):
     text += 'moments = [{ link = "crank", at = "O", moment = "1e-7 N*mm" }]'
     [found] = solve_case_statics(validate(tomllib.loads(text))).reactions.values()
     assert without_rounding(found).drive_torque == pytest.approx(-1e-7, rel=1e-12)
+
+
+def test_a_study_keeps_the_force_of_a_driven_slider():
+    """In N, of either load case; it exerts no torque."""
+    press = Path(__file__).parents[3] / "docs" / "examples" / "entries" / "press.toml"
+    found = check_case(validate(tomllib.loads(press.read_text(encoding="utf-8"))), name="press", fidelity="frame")
+    _, numbers = of_check(found, weighs=False)
+    forces = {one.load_case: (one.quantity, one.unit, one.value) for one in numbers if one.subject == "the drive"}
+    solved = {name: case.forces.reactions.drive_force for name, case in found.load_cases.items()}
+    assert forces == {name: ("drive force", "N", pytest.approx(force)) for name, force in solved.items()}
+    assert min(map(abs, solved.values())) > 1.0
