@@ -195,7 +195,7 @@ def _rate(moved: CaseMotion, title: str) -> Real:
 
 def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iterator[CheckOutcome]:
     solved, times, link = moved.forces[title], _times(moved, title), moved.drive.link
-    torque, speed = solved.drive_torque, solved.motion.angular_speed(link)
+    torque, speed = solved.drive_torque, _rate(moved, title)
 
     def outcome(quantity: Quantity, value: Band, limit: float, why: Reason) -> CheckOutcome:
         return Asked(name=name, subject=Subject.link(link), quantity=quantity, limit=limit).outcome(title, value, why)

@@ -194,8 +194,8 @@ _WAYS = ("bond", "press", "flat", "cross_pin", "screws")
 class MotorCheck(CaseModel):
     """The motor must cover the drive power over the [motion], in every load case with a speed.
 
-    Where its speed and torque are stated, those of the driven link must keep to them too. All are at the driven link:
-    behind a gear they are those of its output.
+    Where its speed and torque are stated, those of the driven link, against the other link of its joint, must keep to
+    them too. All are at the driven link: behind a gear they are those of its output.
     """
 
     type: Literal["motor"]

@@ -129,6 +129,22 @@ def test_the_drive_must_not_be_faster_than_the_motor_without_load() -> None:
     assert slow.verdict is Verdict.FAIL
 
 
+def test_between_two_moving_links_the_motor_turns_as_one_against_the_other() -> None:
+    """A crank at 100 rpm that is driven against the coupler: their own speed, which makes power of the torque."""
+    motor = 'type="motor", voltage="12 V", current="3 A", efficiency=0.7'
+    limits = 'no_load_speed="110 rpm", stall_torque="2000 N*mm"'
+    entries = ['drive.joint="A"', 'load_cases.lift.speed="100 rpm"', f"checks.motor={{{motor}, {limits}}}"]
+    case = edited("four-bar", entries)
+    found = {o.quantity: o for o in motor_outcomes(case, "motor", case.checks["motor"])["lift"]}
+    solved = solve_case_motion(case).forces["lift"]
+    turns = np.abs(solved.motion.angular_speed("crank") - solved.motion.angular_speed("coupler"))
+    np.testing.assert_allclose(np.abs(solved.drive_power), np.abs(solved.drive_torque) * turns, atol=1e-9)
+    fastest = 30.0 / math.pi * float(turns.max())
+    assert fastest > 150.0
+    assert (found["drive speed"].value.value, found["drive speed"].verdict) == (pytest.approx(fastest), Verdict.FAIL)
+    assert found["share of the motor's torque at its speed"].verdict is not Verdict.PASS
+
+
 def test_torque_over_the_line_and_over_time() -> None:
     """A stall torque twice what the peak needs at 720 rpm passes; one that it exceeds is for a flywheel to decide."""
     case = read_case("ornithopter", ["motion.poses=13"])
