@@ -54,9 +54,10 @@ def covered(points: TemperatureFactors) -> tuple[float, float]:
 
 
 def _with_room(points: TemperatureFactors) -> TemperatureFactors:
-    """Return a table that holds room temperature, where it ends above or below."""
+    """Return a table with room temperature, where it ends above or below, or has no point of its own there."""
     known = [temperature for temperature, _ in points]
-    room = tuple((at, 1.0) for at in ROOM if not (known and known[0] <= at <= known[-1]))
+    states_it = any(ROOM[0] <= at <= ROOM[1] for at in known)
+    room = tuple((at, 1.0) for at in ROOM if not (states_it and known[0] <= at <= known[-1]))
     return tuple(sorted((*room, *points)))
 
 

@@ -112,6 +112,7 @@ def read_cycle(data: dict[str, Any], folder: str) -> Cycle | None:
         table, period = _read(spec, folder)
         sign, angle = spec.signed_angle
         used = dict.fromkeys([*([table.column(angle)] if angle else []), *(table.column(x.column) for x in references)])
+        _require_steps(table, angle)
         table = _whole(spec, table, tuple(used), angle)
         table, values = _at_instants(spec, table, _values(spec, table, pose, sign, angle))
     except CaseError as error:
@@ -220,10 +221,7 @@ def _whole(spec: CycleSpec, table: NumberTable, used: tuple[str, ...], angle: st
         values = {name: np.append(of, of[0]) for name, of in table.values.items()}
         values[_CYCLE][-1] = percent[0] + _WHOLE
         if angle:
-            turn = _turn(table, angle)
-            values[angle][-1] += (
-                turn * round((table.values[angle][-1] - table.values[angle][0]) / turn) if turn else 0.0
-            )
+            values[angle][-1] += _turns(table, angle)
         return replace(table, values=values, rows=(*table.rows, table.rows[0]))
     for name in used:
         of = table.values[name]
@@ -237,6 +235,36 @@ def _whole(spec: CycleSpec, table: NumberTable, used: tuple[str, ...], angle: st
                 f"{table.rows[0]}; make them equal, leave the last row out, or write periodic = false",
             )
     return table
+
+
+def _require_steps(table: NumberTable, angle: str) -> None:
+    """Refuse an angle that jumps by more than half a turn, which way round it goes is not known then."""
+    turn = _turn(table, angle) if angle else 0.0
+    steps = np.diff(table.values[angle]) if turn else np.zeros(0)
+    for row, step in zip(table.rows[1:], steps, strict=False):
+        if abs(step) > 0.5 * turn * (1.0 + _SAME):
+            unit = printable(table.units[angle])
+            raise table.wrong(
+                row,
+                angle,
+                f"it jumps by {step:g} {unit}, more than half a turn; let it go on beyond a full turn, {turn:g}, "
+                "or add rows between",
+            )
+
+
+def _turns(table: NumberTable, angle: str) -> float:
+    """Return by how much the first row's angle has grown where it comes again, in whole turns the way that it goes."""
+    values, turn = table.values[angle], _turn(table, angle)
+    grown = turn * round((values[-1] - values[0]) / turn) if turn else 0.0
+    if grown and (values[0] + grown - values[-1]) * (values[-1] - values[-2]) < 0.0:
+        unit = printable(table.units[angle])
+        raise table.wrong(
+            table.rows[-1],
+            angle,
+            f"whether it comes back from {values[-1]:g} to {values[0]:g} or goes on to {values[0] + grown:g} {unit} is "
+            "not known; add the row at the end of the cycle",
+        )
+    return grown
 
 
 def _turn(table: NumberTable, name: str) -> float:

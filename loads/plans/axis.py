@@ -13,7 +13,7 @@ from alula.loads.text.explain import printable
 MOST_VALUES = 1_000_000
 """Values of one range."""
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-_RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>[^/]+?)(?:/(?P<count>.*)|\s+by\s+(?P<step>.*))?", re.DOTALL)
+_RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?:\s+by\s+(?P<step>.*))?", re.DOTALL)
 _FITS = 1e-6
 """Share of a step by which a range may miss a whole number of them."""
 
@@ -132,7 +132,8 @@ def axis(path: str, stated: object) -> Axis:
 
 def _range(path: str, text: str) -> Axis:
     named = _named(path, text)
-    parts = _RANGE.fullmatch(text.translate(TYPOGRAPHY).strip())
+    ends, count = _without_count(text.translate(TYPOGRAPHY).strip())
+    parts = _RANGE.fullmatch(ends)
     if parts is None:
         raise CaseError(f'{named} this is no range; write for example "2 mm..8 mm/7"')
     (first, unit), (last, other) = (_quantity(parts[end], named) for end in ("first", "last"))
@@ -142,8 +143,8 @@ def _range(path: str, text: str) -> Axis:
     if not last > first:
         raise CaseError(f"{named} its last value must be larger than its first; exchange or correct them")
     found = Axis(path=path, ends=(first, last), unit=unit)
-    if parts["count"] is not None:
-        steps = _count(parts["count"], named) - 1
+    if count is not None:
+        steps = _count(count, named) - 1
     elif parts["step"] is not None:
         size, of = _quantity(parts["step"], named)
         size *= _factor(of, unit, named)
@@ -155,6 +156,17 @@ def _range(path: str, text: str) -> Axis:
     else:
         return found
     return found.divided(steps)
+
+
+def _without_count(text: str) -> tuple[str, str | None]:
+    """Return a range, and what stands behind its last slash where that is no unit, as it is in N/mm."""
+    ends, slash, last = text.rpartition("/")
+    if slash and ".." in ends:
+        try:
+            unit_of(last.strip() or "?")
+        except CaseError:
+            return ends, last
+    return text, None
 
 
 def _quantity(text: str, named: str) -> tuple[float, str]:

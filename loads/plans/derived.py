@@ -147,11 +147,10 @@ def _value(stated: object, path: Path) -> Value | str:
 
 def _stated(value: Value, path: str) -> object:
     """Return a quantity as a case file states it, in alula's own units."""
-    for unit in INTERNAL_UNITS.values():
+    if not value.dimensions:
+        number = float(f"{value.magnitude:.12g}")
+        return int(number) if number.is_integer() else number  # some entries count
+    for unit in ("K" if unit == "degC" else unit for unit in INTERNAL_UNITS.values()):
         if unit_of(unit)[1] == value.dimensions:
             return f"{value.to(unit):.12g} {unit}"
-    if value.dimensions:
-        raise CaseError(
-            f"link {printable(path)}: no entry is measured in {describe(value.dimensions)}; check the formula"
-        )
-    return float(f"{value.magnitude:.12g}")
+    raise CaseError(f"link {printable(path)}: no entry is measured in {describe(value.dimensions)}; check the formula")

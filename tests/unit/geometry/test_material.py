@@ -6,6 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from alula.geometry.materials.material import Fatigue, Material, library
+from alula.geometry.materials.temperature import covered, factor_at
 
 KNOWN = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
 CARD: dict[str, Any] = {
@@ -195,3 +196,13 @@ def test_published_values_reach_the_library_in_its_units(name: str) -> None:
     assert card.density == pytest.approx(density * 1e-12)
     assert card.youngs_modulus == pytest.approx(modulus * 1e3)
     assert (card.yield_strength, card.ultimate_strength) == (yields, breaks)
+
+
+def test_room_temperature_has_the_stated_values_whatever_the_table_leaves_out() -> None:
+    """A table from frost to heat without a point between them; one with a point there keeps it."""
+    wide = ((-20.0, 1.2), (60.0, 0.5))
+    assert [factor_at(wide, at) for at in (20.0, 21.0, 23.0)] == [1.0] * 3
+    assert factor_at(wide, 0.0) == pytest.approx(1.1)
+    assert factor_at(wide, 41.5) == pytest.approx(0.75)
+    assert covered(wide) == (-20.0, 60.0)
+    assert factor_at(((0.0, 1.1), (22.0, 1.0), (60.0, 0.5)), 11.0) == pytest.approx(1.05)

@@ -286,6 +286,8 @@ def test_points_of_a_load_line_may_be_columns(tmp_path):
         (("flexion [deg]", "flexion [mm]"), {}, "row 2, column flexion: \"mm\" is not a unit of angle"),
         (("30;12", "30;"), {}, "row 4, column flexion: the cell is empty"),
         (("12;20;1000", "12;20;1e30"), {}, r"'gait.csv', row 3, column Fy: load_cases\.stride\..*at most 1e\+20"),
+        (("62;35", "62;-170"), {}, "row 6, column flexion: it jumps by -185 deg, more than half a turn; let it go on"),
+        (("75;50;0;0\n95;12", "75;205;0;0\n95;195"), {}, "row 8, column flexion: whether it comes back from 195"),
         ((), {"file": "none.csv"}, r"cycle: table '.*': there is no such file"),
         ((), {"angle": "knee"}, "cycle: 'gait.csv' has no column 'knee'"),
         ((), {"zero": "5 mm"}, "cycle: zero: \"mm\" is not a unit of angle"),
@@ -309,6 +311,14 @@ def test_what_does_not_fit_is_refused_in_one_sentence(tmp_path, change, entries,
     with pytest.raises(CaseError) as refused:
         knee(tmp_path, table, **entries)
     assert re.search(told, str(refused.value)), refused.value
+
+
+def test_a_swing_of_more_than_half_a_turn_comes_back_and_a_crank_goes_on(tmp_path):
+    """A row that is left out at the end is the first again: the way that the last step goes, and no full turn more."""
+    swing = GAIT.replace("62;35", "62;100").replace("75;50", "75;188")
+    assert np.degrees(np.ptp(knee(tmp_path, swing).motion.states.values)) == pytest.approx(178.0)
+    crank = "cycle [%];flexion [deg];Fy [N];M [N*m]\n0;-10;0;0\n30;110;0;0\n60;230;0;0\n"
+    assert np.degrees(np.diff(knee(tmp_path, crank).motion.states.values)) == pytest.approx([120.0] * 3)
 
 
 def test_columns_need_a_cycle_and_a_cycle_needs_columns(tmp_path):

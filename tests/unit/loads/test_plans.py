@@ -7,6 +7,7 @@ import pytest
 
 from alula.geometry.base.errors import CaseError
 from alula.loads.plans.axis import axis
+from alula.loads.plans.derived import derived_value
 from alula.loads.plans.plan import plan_of, read_plan, table_of
 from alula.loads.plans.points import Points
 from alula.loads.plans.variants import Variants
@@ -28,6 +29,10 @@ DIAMETER = "parts.tube.outer_diameter"
         ("eye-faces, bore-shear", ("eye-faces", "bore-shear")),
         ("1, 2.5, true", (1, 2.5, True)),
         (["2 mm", 3], ("2 mm", 3)),
+        ("1 N/mm..3 N/mm/3", ("1 N/mm", "2 N/mm", "3 N/mm")),
+        ("5 rad/s .. 6 rad/s / 2", ("5 rad/s", "6 rad/s")),
+        ("1 g/cm^3..2 g/cm^3 by 0.5 g/cm^3", ("1 g/cm^3", "1.5 g/cm^3", "2 g/cm^3")),
+        ("1 N*mm/rad..2 N*mm/rad", ()),
     ],
 )
 def test_values_of_an_entry(stated, values):
@@ -108,6 +113,23 @@ def test_linked_entries_follow_from_others():
     tables = variants.tables(variants.points[1])
     assert tables["parts"]["tube"]["eye_thickness"] == "7.6 mm"  # 6 + 2 x 0.8
     assert tables["parts"]["rod-4mm"]["fillet_radius"] == "0.4 mm"
+
+
+@pytest.mark.parametrize(
+    ("stated", "value"),
+    [
+        ("count / 2", 1.5),
+        ("count * 2", 6),
+        ("20 % * count", 0.6),
+        ("wide / 1 cm", 0.2),
+        ("300 K", "300 K"),
+        ("6 V", "6 V"),
+    ],
+)
+def test_pure_numbers_and_temperatures_may_be_linked(stated, value):
+    """A whole number stays one: some entries count."""
+    found = derived_value({"made": {"count": 3, "wide": "2 mm"}}, "made.other", stated)
+    assert (found, type(found)) == (value, type(value))
 
 
 @pytest.mark.parametrize(
