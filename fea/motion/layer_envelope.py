@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.scatter import Scatter, layer_scatter
+from alula.fea.common.scatter import Scatter, fatigue_scatter, layer_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
 from alula.fea.judging.layers import in_any_direction
 from alula.fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LoadCaseEnvelope, VariantCurve
@@ -137,15 +137,14 @@ def _fatigue(
     """Return the fatigue of the layers under a load case, at the critical node of the variant that governs."""
     data, layers = motion.material.fatigue_across_layers, motion.measure.sides[0][0]
     assert data is not None
-    own, stresses, lives = [], [], []
+    own, stresses, lives, scatter = [], [], [], fatigue_scatter(data)
     for curve in curves:
         cycle, at, factors = _critical(motion, data, curve)
-        ends = [(cycle.stress(data, layers.across, f), cycle.repetitions(data, layers.across, f))
-                for f in (1.0, factors[0] * load.low, factors[1] * load.high)]  # fmt: skip
-        stresses += [stress for stress, _ in ends]
-        lives += [life for _, life in ends if life is not None]
+        for f, by in ((1.0, 1.0), (factors[0] * load.low, scatter.high), (factors[1] * load.high, scatter.low)):
+            stresses.append(cycle.stress(data, layers.across, f))
+            lives.append(cycle.repetitions(data, layers.across, f, by) or 0.0)
         if curve.transfer in (None, motion.stated):
-            own.append((*ends[0], cycle, at, curve))
+            own.append((stresses[-3], cycle.repetitions(data, layers.across), cycle, at, curve))
     stress, life, cycle, at, curve = max(own, key=lambda one: one[0])
     sources = distinct(pin_sources(driven=curve.transfer is not None), (ESTIMATED,), load.sources)
     wanted = data.cycles if repetitions is None else repetitions
@@ -158,7 +157,9 @@ def _fatigue(
         stress=Band.around(stress, tuple(stresses), *sources),
         wanted=wanted,
         strength=None if strength is None else min(strength, layers.across),
-        repetitions=None if life is None else life_scatter(data).on(Band.around(life, tuple(lives), *sources)),
+        repetitions=None
+        if life is None
+        else Band.around(life, tuple(lives), *distinct(sources, life_scatter(data).told)),
     )
 
 

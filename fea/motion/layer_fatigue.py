@@ -93,7 +93,7 @@ class LayerCycle:
         both = factor * np.array([self.tension, self.shear])
         return float(_harm(both[:1], both[1:], data, strength)[0])
 
-    def repetitions(self, data: Fatigue, strength: float, factor: float = 1.0) -> float | None:
+    def repetitions(self, data: Fatigue, strength: float, factor: float = 1.0, by: float = 1.0) -> float | None:
         """Return how often the motion is borne, every cycle counted as if it were the worst.
 
         Parameters
@@ -102,6 +102,8 @@ class LayerCycle:
         strength : float
         factor : float, optional
             As for ``stress``.
+        by : float, optional
+            Share of the card's fatigue strength, with which its endurance limit goes as well.
 
         Returns
         -------
@@ -110,7 +112,7 @@ class LayerCycle:
         """
         if data.exponent is None:
             return None
-        stress = np.array([self.stress(data, strength, factor)])
+        stress = np.array([self.stress(data, strength, factor)]) / by
         return float(cycles_to_failure(stress, data)[0]) / max(self.count, 1.0)
 
 

@@ -1,5 +1,6 @@
 """One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -316,7 +317,8 @@ class LinkMotion:
 
 def _harm(life: FatigueLife) -> tuple[float, float]:
     """Miner's sum of a repetition, and the stress of its worst cycle where that is alike or not known."""
-    return (0.0 if life.repetitions is None else 1.0 / life.repetitions), life.stress
+    harm = 0.0 if life.repetitions is None else 1.0 / life.repetitions if life.repetitions > 0.0 else math.inf
+    return harm, life.stress
 
 
 def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -> LoadCaseEnvelope:

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, fatigue_scatter
-from alula.fea.common.source import Source, SourceKind
+from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.solid.stress import extreme_principal, von_mises
 from alula.geometry.base.ties import first_largest
 from alula.geometry.materials.material import Fatigue, Material
@@ -314,6 +314,27 @@ class FatigueLife:
         """Largest less smallest stress [MPa]."""
         return self.largest - self.smallest
 
+    def with_strength(self, material: Material, by: float) -> float:
+        """Return the repetitions with another fatigue strength, with which the endurance limit goes as well.
+
+        Parameters
+        ----------
+        material : Material
+        by : float
+            Share of the card's strength.
+
+        Returns
+        -------
+        float
+            NaN where the card has no exponent.
+        """
+        fatigue, cycles = material.fatigue, np.reshape(self.cycles, (-1, 3))
+        assert fatigue is not None
+        if fatigue.exponent is None:
+            return math.nan
+        stress = equivalent_peak(cycles, fatigue, material.ultimate_strength)
+        return _lasting(float(_harms(cycles, stress / by, fatigue).sum()))
+
 
 def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()) -> FatigueLife:
     """Return the fatigue under repetitions of a closed history, or of blocks of it, whose harm adds up.
@@ -346,10 +367,9 @@ def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()
     of_worst = stress / worst if 0.0 < worst < math.inf else np.zeros_like(stress)
     count = float((cycles[:, 2] * of_worst ** (fatigue.exponent or 0.0)).sum()) or 1.0
     if fatigue.exponent is not None:
-        with np.errstate(divide="ignore"):  # stress without end fails at once
-            each = cycles[:, 2] / cycles_to_failure(stress, fatigue)
+        each = _harms(cycles, stress, fatigue)
         damage = float(each.sum())
-        repetitions = 1.0 / damage if damage > 0.0 else math.inf
+        repetitions = _lasting(damage)
         harm = np.bincount(of_block, each / damage, len(every)).tolist() if 0.0 < damage < math.inf else harm
     return FatigueLife(
         smallest=float(history.min()),
@@ -360,6 +380,16 @@ def fatigue_life(history: Real, material: Material, blocks: Sequence[Block] = ()
         repetitions=repetitions,
         harm=tuple(harm),
     )
+
+
+def _harms(cycles: Real, stress: Real, fatigue: Fatigue) -> Real:
+    """Terms of Miner's sum (k,) over one repetition, of cycles (k, 3) and their equivalent peaks."""
+    with np.errstate(divide="ignore"):  # stress without end fails at once
+        return np.asarray(cycles[:, 2] / cycles_to_failure(stress, fatigue))
+
+
+def _lasting(damage: float) -> float:
+    return 1.0 / damage if damage > 0.0 else math.inf
 
 
 def strength_at(fatigue: Fatigue, cycles: float) -> float | None:
@@ -551,7 +581,8 @@ class LinkFatigue(Lasting):
         """
         assert material.fatigue is not None
         wanted = material.fatigue.cycles if repetitions is None else repetitions
-        counts = tuple(one.repetitions for one in lives if one.repetitions is not None)
+        scatter = fatigue_scatter(material.fatigue)
+        counts = tuple(one.with_strength(material, by) for one in lives for by in (scatter.low, scatter.high))
         return cls(
             location=location,
             history=history,
@@ -562,12 +593,12 @@ class LinkFatigue(Lasting):
             strength=borne(material, wanted if repetitions is None else wanted * life.count),
             repetitions=None
             if life.repetitions is None
-            else life_scatter(material.fatigue).on(Band.around(life.repetitions, counts, *sources)),
+            else Band.around(life.repetitions, counts, *distinct(sources, life_scatter(material.fatigue).told)),
         )
 
 
 def life_scatter(data: Fatigue) -> Scatter:
-    """Return what the scatter of the fatigue strength makes of a life: its power with the exponent.
+    """Return what the scatter of the fatigue strength makes of a life that ends: its power with the exponent.
 
     Parameters
     ----------

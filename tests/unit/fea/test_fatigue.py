@@ -5,7 +5,9 @@ import pytest
 from pydantic import ValidationError
 
 from alula.fea.motion.critical import critical_node
+from alula.fea.motion.link_envelope import _harm
 from alula.fea.outcomes.fatigue import (
+    LinkFatigue,
     borne,
     cycles_to_failure,
     equivalent_peak,
@@ -134,6 +136,24 @@ def test_the_scatter_of_the_strength_is_in_the_life_to_the_power_of_the_exponent
         steel(strength_range=["310 MPa", "330 MPa"])
 
 
+def test_the_endurance_limit_goes_with_the_strength():
+    """Endless below the limit of the stated strength, and not below that of a weaker one; where lives end as before."""
+    card = steel(exponent=5.0, endurance_cycles=1e7, strength_range=["200 MPa", "400 MPa"])
+    weaker, low, high = (steel(exponent=5.0, endurance_cycles=1e7, stress=f"{x} MPa") for x in (200.0, 250.0, 290.0))
+    limit = strength_at(card.fatigue, 1e7)
+    below, above = (np.array([-share * limit, share * limit]) for share in (0.8, 1.5))
+    found = fatigue_life(below, card)
+    assert found.repetitions == math.inf
+    ends = LinkFatigue.of([found], found, below, np.zeros(3), (), material=card, repetitions=None).repetitions
+    assert ends.low == pytest.approx(fatigue_life(below, weaker).repetitions)
+    assert ends.low < 1e7
+    assert (ends.value, ends.high) == (math.inf, math.inf)
+    short = fatigue_life(above, card)
+    for other, by in ((low, 250.0 / 300.0), (high, 290.0 / 300.0)):
+        assert short.with_strength(card, by) == pytest.approx(fatigue_life(above, other).repetitions)
+        assert short.with_strength(card, by) == pytest.approx(short.repetitions * by**5)
+
+
 def test_miners_sum_of_two_blocks():
     # One cycle of 300 MPa costs 1e-6, two of 150 MPa cost 2/(1e6 2^8), all reversed.
     history = np.array([300.0, -300.0, 150.0, -150.0, 150.0, -150.0])
@@ -147,6 +167,7 @@ def test_miners_sum_of_two_blocks():
 def test_what_is_stressed_beyond_all_numbers_has_no_life():
     life = fatigue_life(np.array([1e20, 0.0]), steel())
     assert (life.stress, life.repetitions) == (math.inf, 0.0)
+    assert _harm(life) == (math.inf, math.inf)
 
 
 def test_ripples_are_left_out():
