@@ -78,9 +78,10 @@ class Alternatives(Generic[T]):
             least = max(least_of_convex(zip(self.coefficients, every, strict=True)), 0.0)
         if not most > 0.0:
             return Scatter()
-        low, high = (least / value, most / value) if value > 0.0 else (1.0, math.inf)
-        high = math.inf if self.endless else max(high, 1.0)
-        return Scatter(low=min(low, 1.0), high=high, sources=(self.source,))
+        if not value > 0.0:
+            return Scatter.from_zero(others, (self.source,))
+        high = math.inf if self.endless else max(most / value, 1.0)
+        return Scatter(low=min(least / value, 1.0), high=high, sources=(self.source,))
 
     def told_by(self, other: Callable[[T], Any]) -> "Alternatives[Any]":
         """Return the same with something else of every answer.

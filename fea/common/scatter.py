@@ -8,7 +8,7 @@ modulus has none.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,11 +33,34 @@ class Scatter:
         The factors; 1 where nothing scatters.
     sources : tuple of Source
         What scatters; empty where nothing does.
+    rises : bool
+        True of a number that is zero as stated, or one over it, and not in another answer: no factor tells how large it
+        is there.
     """
 
     low: float = 1.0
     high: float = 1.0
     sources: tuple[Source, ...] = ()
+    rises: bool = False
+
+    @classmethod
+    def from_zero(cls, others: Sequence[float], sources: tuple[Source, ...]) -> "Scatter":
+        """Return the scatter of a number that is zero as stated.
+
+        Parameters
+        ----------
+        others : sequence of float
+            The number in other answers.
+        sources : tuple of Source
+            What makes the answers differ.
+
+        Returns
+        -------
+        Scatter
+            None where it is zero in all.
+        """
+        risen = max(others, default=0.0) > 0.0
+        return cls(high=math.inf, sources=sources, rises=True) if risen else cls()
 
     def on(self, band: Band) -> Band:
         """Return a band with its ends multiplied by the factors.
@@ -54,6 +77,8 @@ class Scatter:
         if band.unknowable or not self.sources:
             return band
         low, high = _product(band.low, self.low), _product(band.high, self.high)
+        if self.rises:
+            low, high = (0.0 if low == math.inf else low), (math.inf if high == 0.0 else high)
         return replace(band, low=low, high=high, sources=distinct(band.sources, self.told))
 
     def times(self, other: "Scatter") -> "Scatter":
@@ -69,7 +94,8 @@ class Scatter:
         Scatter
         """
         sources = distinct(self.told, other.told)
-        return Scatter(low=self.low * other.low, high=self.high * other.high, sources=sources)
+        rises = self.rises or other.rises
+        return Scatter(low=self.low * other.low, high=self.high * other.high, sources=sources, rises=rises)
 
     def either(self, other: "Scatter") -> "Scatter":
         """Return the scatter of what goes with this number, with another one, or with both.
@@ -84,7 +110,8 @@ class Scatter:
         Scatter
         """
         sources = tuple(replace(one, ends=UNKNOWN) for one in distinct(self.told, other.told))
-        return Scatter(low=min(self.low, other.low), high=max(self.high, other.high), sources=sources)
+        rises = self.rises or other.rises
+        return Scatter(low=min(self.low, other.low), high=max(self.high, other.high), sources=sources, rises=rises)
 
     @property
     def told(self) -> tuple[Source, ...]:
@@ -143,7 +170,11 @@ def differing(parts: Iterable[tuple[float | Real, Scatter]]) -> float | Real:
     float or ndarray
         In the unit of the sizes.
     """
-    return sum(size * max(one.high - 1.0, 1.0 - one.low) for size, one in parts)
+    found: float | Real = 0.0
+    for size, one in parts:
+        most = max(one.high - 1.0, 1.0 - one.low)
+        found = found + (size * most if most < math.inf else 0.0 * size + math.inf)
+    return found
 
 
 def _product(end: float, factor: float) -> float:

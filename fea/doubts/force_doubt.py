@@ -13,12 +13,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from alula.fea.beam.cut_free import link_loads
 from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import COUPLES, Source
 from alula.fea.doubts.load_growth import Growths, telling
-from alula.fea.links.link_by_hand import HandStates, on_plates
+from alula.fea.links.link_by_hand import HandStates, acting_on, on_plates
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
 from alula.fea.nonlinear.rim_growth import rim_growth
@@ -71,9 +70,9 @@ def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces
     -------
     LinkAnswers
     """
-    body, rule = case.body(link), _summed(forces.sources)
+    rule = _summed(forces.sources)
     stated, *others = (
-        on_plates(case, link, link_loads(load_case, link, body, reactions, loads))
+        on_plates(case, link, acting_on(case, load_case, link, reactions, loads))
         for reactions in (forces.on_tight_pins, *(one.reactions for one in forces.open_by))
     )
     return LinkAnswers(stated=stated, others=tuple(others), stress=rule, displacement=rule)
@@ -139,9 +138,8 @@ def sharing_answers(
 
 def _ways(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> tuple[LinkLoads, ...]:
     """What acts on a link with tight pins, and in the ways of sharing that count."""
-    body = case.body(link)
     tight, *others = (
-        link_loads(load_case, link, body, reactions, loads) for reactions in (forces.reactions, *forces.sharings)
+        acting_on(case, load_case, link, reactions, loads) for reactions in (forces.reactions, *forces.sharings)
     )
     longest = case.linkage.longest
     across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
@@ -279,7 +277,9 @@ def _on_tilting_pins(case: Case, link: str, states: Sequence[LinkLoads]) -> list
 
 def _summed(sources: tuple[Source, ...]) -> Rule:
     def around(value: float, changed: Sequence[float]) -> Scatter:
-        steps = np.array([one - value for one in changed]) / (value or np.inf)
+        if not value > 0.0:
+            return Scatter.from_zero(changed, sources)
+        steps = np.array([one - value for one in changed]) / value
         low, high = float(np.minimum(steps, 0.0).sum()), float(np.maximum(steps, 0.0).sum())
         return Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources)
 

@@ -14,13 +14,14 @@ from alula.fea.common.reason import Reason, reason, under_load_cases
 from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import Source, SourceKind, play_source
 from alula.fea.doubts.load_growth import LEAST, Growths, telling
-from alula.fea.links.link_by_hand import HandStates, on_plates
+from alula.fea.links.link_by_hand import HandStates, acting_on, on_plates
 from alula.fea.nonlinear.large_displacement import LargeDisplacement, examine
+from alula.fea.outcomes.unloaded import without_rounding
 from alula.fea.standing.joint_forces import JointForces, joint_forces
 from alula.fea.superposition.link_answers import LinkAnswers, Rule, on_band
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.case.case import Case
-from alula.loads.records.applied import Load
+from alula.loads.records.applied import Load, load_size
 from alula.loads.states.play import Displaced, Play, Span
 
 Real = NDArray[np.float64]
@@ -130,7 +131,7 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
     play = forces.play
     assert play is not None
     source = play_source(play.clearances)
-    acting = link_loads(load_case, link, case.body(link), forces.reactions, loads)
+    acting, size = acting_on(case, load_case, link, forces.reactions, loads), load_size(loads, case.linkage.longest)
     if play.through_dead_point:
         lost = Scatter(low=0.0, high=np.inf, sources=(source,))
         without = [on_plates(case, link, acting)]
@@ -138,7 +139,7 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         return _OnLink(answers=without, peaks=nothing, by_hand=nothing, rules=(lambda *_: lost,) * 3)
     each = [way for way in play.loose.ways for _ in range(2)]
     ends = [way for way, sound in zip(each, play.ends.sound[1:], strict=True) if sound]
-    answers = _answers(case, acting, play.ends)
+    answers = _answers(case, acting, play.ends, size)
     numbers = _numbers(case, link, answers)
     worst = list[Mapping[str, Real]]()
     for plain, *tried in numbers.tolist():
@@ -149,12 +150,14 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
             worst += [slopes, {name: -slope for name, slope in slopes.items()}]
     if worst:
         furthest = {name: np.array([slopes[name] for slopes in worst]) for name in play.loose.radii}
-        others = _answers(case, acting, play.solved(play.loose.at_rims(furthest)))
+        others = _answers(case, acting, play.solved(play.loose.at_rims(furthest)), size)
         answers = [*answers, *others]
         numbers = np.hstack([numbers, _numbers(case, link, others)]) if others else numbers
     held = [_scatter(play.forces[name], source) for name in case.linkage.joints_of(link)] if case.layered else []
 
     def alone(value: float, found: Sequence[float]) -> Scatter:
+        if not value > 0.0:
+            return Scatter.from_zero(found, (source,))
         steps = {name: np.zeros(2) for name in play.loose.radii}
         for (name, i), one in zip(ends, found, strict=False):
             steps[name][i] = max(steps[name][i], abs(one - value))
@@ -179,8 +182,8 @@ def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:
     return np.vstack([hand.peaks, hand.displacement, hand.inverse_buckling])
 
 
-def _answers(case: Case, plain: LinkLoads, here: Displaced) -> list[Plates]:
-    """What acts on a link with its joints at offsets, in each of n states that are sound.
+def _answers(case: Case, plain: LinkLoads, here: Displaced, size: float) -> list[Plates]:
+    """What acts on a link with its joints at offsets, in each of n states that are sound; ``size`` is of all loads.
 
     Components out of the plane are those of the link ``plain``, in its own axes, since play changes none of them.
     """
@@ -189,8 +192,9 @@ def _answers(case: Case, plain: LinkLoads, here: Displaced) -> list[Plates]:
     here = here.chosen(here.sound)
     found = link_loads(plain.name, plain.link, case.body(plain.link), here, here.loads)
     wrenches = [np.where(IN_PLANE, new, old) for (_, new), (_, old) in zip(found.wrenches, plain.wrenches, strict=True)]
-    states = found.with_wrenches(wrenches)
-    return [on_plates(case, plain.link, states.chosen(i)) for i in range(len(here.sound))]
+    states, longest = found.with_wrenches(wrenches), case.linkage.longest
+    every = (without_rounding(states.chosen(i), size, longest) for i in range(len(here.sound)))
+    return [on_plates(case, plain.link, one) for one in every]
 
 
 def _scatter(span: Span, source: Source) -> Scatter:

@@ -4,6 +4,7 @@ Fits are recommended only where they would decide what is open: the states of pi
 and take the place of all states in the band. Where none decides, the joint is told whose fit narrows the band most.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
@@ -86,6 +87,8 @@ class SharedCouples:
 
     def _decides(self, link: str, left: Scatter) -> bool:
         known, every = self.told[link], self.by_hand.get(link, Scatter())
+        if known.high == math.inf:  # nothing acts on it as stated
+            return False
         # The band may hold what solids make of all states; of those that are left, hand calculation tells their part.
         low = 1.0 - (1.0 - known.low) * _part(1.0 - left.low, 1.0 - every.low)
         high = 1.0 + (known.high - 1.0) * _part(left.high - 1.0, every.high - 1.0)

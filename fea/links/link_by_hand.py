@@ -102,6 +102,27 @@ def cut_link(
     return tuple(second_order_loads(case, link, plate, stays=deformed is not None) for plate in borne)
 
 
+def acting_on(case: Case, load_case: str, link: str, reactions: Reactions, loads: Sequence[Load]) -> LinkLoads:
+    """Return what acts on a link on the linkage's own shape; nothing where that is but rounding.
+
+    Parameters
+    ----------
+    case : Case
+    load_case, link : str
+    reactions : Reactions
+        What the joints carry.
+    loads : sequence of Load
+        All else that acts.
+
+    Returns
+    -------
+    LinkLoads
+    """
+    longest = case.linkage.longest
+    found = link_loads(load_case, link, case.body(link), reactions, loads)
+    return without_rounding(found, load_size(loads, longest), longest)
+
+
 def on_plates(case: Case, link: str, loads: LinkLoads) -> Plates:
     """Return what acts on a link, or on each plate of a pair whose plates bear differently.
 

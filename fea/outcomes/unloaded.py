@@ -25,8 +25,9 @@ from alula.loads.states.actions import lasting, stated_loads
 
 Real = NDArray[np.float64]
 
-SHARE = 1e-9
-"""Share of the stated loads below which a force is rounding: 16 digits, of which a near dead point costs 6."""
+SHARE = 1e-8
+"""Share of the stated loads below which a force is rounding: 16 digits, of which a near dead point costs 6, and on the
+deformed shape what its equilibrium is iterated to, 1e-9 of the loads at each joint."""
 
 
 def acts(loads: LinkLoads, size: float, length: float) -> bool:

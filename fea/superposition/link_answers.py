@@ -30,8 +30,9 @@ def widest(sources: tuple[Source, ...]) -> Rule:
     """
 
     def rule(value: float, others: Sequence[float]) -> Scatter:
-        shares = [1.0, *(one / value for one in others)] if value > 0.0 else [1.0]
-        low, high = sought(shares)
+        if not value > 0.0:
+            return Scatter.from_zero(others, sources)
+        low, high = sought([1.0, *(one / value for one in others)])
         return Scatter(low=max(low, 0.0), high=high, sources=sources)
 
     return rule

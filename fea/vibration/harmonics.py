@@ -116,11 +116,11 @@ def nearest_harmonic(case: Case) -> Reason | None:
     """
     if asks(case, FrequencyCheck):
         return None
-    driven = {abs(one.speed): (name, one) for name, one in reversed(case.load_cases.items()) if one.speed != 0.0}
+    driven = {name: one for name, one in case.load_cases.items() if one.speed != 0.0}
     if not driven:
         return None  # before anything is weighed
     try:
-        found = pose_frequencies(case.model_copy(update={"load_cases": dict(driven.values())}), count=1)
+        found = pose_frequencies(case.model_copy(update={"load_cases": driven}), count=1)
     except (CannotRunError, CaseError):
         return None
     nearest, said = math.inf, None

@@ -389,6 +389,8 @@ def _check_pins(case: CoreCase, name: str, check: PinCheck | BearingCheck) -> No
 def _check_ways_to_hold(case: CoreCase, asked: WaysToHold) -> None:
     """A published displacement stands beside that of the loads that it was published for, and of no others."""
     check_point(case.linkage, "ways_to_hold", asked.link, asked.at)
+    if not any(case.linkage.ground in joint.links and not joint.slides for joint in case.joints.values()):
+        raise CaseError("ways_to_hold: no revolute joint on the ground, where a link could be held; leave it out")
     if asked.load_case is not None:
         require("ways_to_hold.load_case", asked.load_case, case.load_cases, "does not exist")
     elif asked.published is not None and len(case.load_cases) > 1:

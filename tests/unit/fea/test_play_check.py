@@ -186,12 +186,12 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
             "C1": (12.0, 1.2, 3.0), "-B0": (7.0, 0.7, 0.0), "-B1": (6.0, 0.6, 4.0), "-C0": (10.0, 1.0, 1.0),
             "-C1": (8.0, 0.8, 0.0), "most": (19.0, 1.5, 2.0), "least": (2.5, 0.5, 0.5)}  # fmt: skip
     stubs = {
-        "_answers": lambda case, plain, here: [
+        "_answers": lambda case, plain, here, size: [
             (name,) for name, one in zip(here.names, here.sound, strict=True) if one
         ],
         "on_plates": lambda case, link, loads: (loads,),
         "_numbers": lambda case, link, answers: np.array([[told[one][i] for (one,) in answers] for i in (0, 0, 1, 2)]),
-        "link_loads": lambda *_: None,
+        "acting_on": lambda *_: None,
     }
     for name, stub in stubs.items():
         monkeypatch.setattr(doubt_of_play, name, stub)
@@ -205,14 +205,15 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
         solved=lambda slopes: SimpleNamespace(names=["most", "least"] * 4, sound=[reached] * len(slopes["B"])),
         loose=SimpleNamespace(radii={"B": 0.05, "C": 0.1}, ways=ways, at_rims=lambda slopes: slopes),
     )
-    case = SimpleNamespace(checked_links=["arm"], body=lambda link: SimpleNamespace(pins=()), layered=False)
+    linkage = SimpleNamespace(longest=1.0, joints_of=lambda link: ["B", "C"])
+    case = SimpleNamespace(checked_links=["arm"], linkage=linkage, layered=False)
     found = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
     stress, displacement = found.stress["arm"], found.displacement["arm"]
     assert (stress.low, stress.high) == pytest.approx((0.25, 1.9) if reached else (0.3, 1.7))
     assert (displacement.low, displacement.high) == pytest.approx((0.3, 1.7))
     assert (found.columns["arm"].low, found.columns["arm"].high) == pytest.approx((0.0, 1.0 + math.hypot(1, 3) + 2.0))
     # Between layers couples go with the force of that pin of the link which play changes most, whichever it is.
-    case.layered, case.linkage = True, SimpleNamespace(joints_of=lambda link: ["B", "C"])
+    case.layered = True
     for one, other in (("B", "C"), ("C", "B")):
         play.forces = {one: Span(value=2.0, low=1.8, high=2.2), other: Span(value=1.0, low=0.1, high=3.0)}
         tied = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
@@ -238,10 +239,11 @@ def test_no_answer_is_made_of_states_in_which_the_linkage_cannot_be_assembled(mo
     acting = SimpleNamespace(name="tip", link="arm", wrenches=(), with_wrenches=lambda _: SimpleNamespace(chosen=int))
     monkeypatch.setattr(doubt_of_play, "link_loads", lambda *_: acting)
     monkeypatch.setattr(doubt_of_play, "on_plates", lambda case, link, loads: (loads,))
-    case = SimpleNamespace(body=lambda link: None)
+    monkeypatch.setattr(doubt_of_play, "without_rounding", lambda loads, size, length: loads)
+    case = SimpleNamespace(body=lambda link: None, linkage=SimpleNamespace(longest=1.0))
     for sound in ([True, False, True, False], [False, False]):
         here = SimpleNamespace(sound=np.array(sound), chosen=lambda of: SimpleNamespace(sound=of[of], loads=()))
-        found = doubt_of_play._answers(case, acting, here)  # type: ignore[arg-type]
+        found = doubt_of_play._answers(case, acting, here, 1.0)  # type: ignore[arg-type]
         assert found == [(i,) for i in range(sum(sound))]
 
 
