@@ -15,7 +15,7 @@ from alula.loads.case.case_file import read_text, validate
 from alula.loads.states.case_motion import CaseMotion, solve_case_motion
 from alula.loads.states.instant_centre import InstantCentre, instant_centre
 from alula.loads.states.kinetostatics import relative_motion
-from alula.reports.motion.centre import centre_section
+from alula.reports.motion.centre import _stability, centre_section
 from alula.reports.sections.section import Group, Text
 
 
@@ -106,6 +106,16 @@ def test_sentences_and_record():
     [series] = section.series
     assert series.file == "instant-centre.csv"
     assert len(series.columns) == 5
+
+
+def test_all_stretches_on_the_other_side_are_told():
+    """Ahead, behind, at infinity, ahead and behind again: from one pose to another, and at a single one."""
+    motion = solve_case_motion(edited("knee", ['motion.range=["0 deg", "5 deg"]', "motion.poses=6"])).motion
+    ahead = np.array([3.0, -1.0, -2.0, np.nan, 1.0, -1.0])
+    told = _stability("the centre", motion, ahead).text
+    assert told.endswith("and behind it from thigh = 1.0000 deg to 2.0000 deg and at thigh = 5.0000 deg.")
+    told = _stability("the centre", motion, -ahead).text
+    assert told.endswith("and ahead of it from thigh = 1.0000 deg to 2.0000 deg and at thigh = 5.0000 deg.")
 
 
 FLEXION = np.array([5.0, 18.0, 8.0, 8.0, 50.0, 40.0])  # it turns back in rows 2 and 5, and dwells in 3 and 4

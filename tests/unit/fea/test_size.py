@@ -2,6 +2,7 @@
 
 import math
 from concurrent.futures import Future
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,8 @@ from alula.fea.study.store import Store
 from alula.geometry.base.errors import CaseError
 from alula.loads.plans.axis import axis
 from alula.loads.plans.plan import plan_of
+from alula.reports.commands.telling import text_of
+from alula.reports.study.size import size_section
 
 PATH = "parts.tube.outer_diameter"
 
@@ -115,6 +118,28 @@ def test_what_a_step_gains_follows_from_the_solved_ones(tmp_path):
     assert found.gain(found.failing) == pytest.approx((6.25 / 6.0) ** 3 - 1.0, rel=1e-9)
     assert found.limit(found.failing).value == pytest.approx((6.0 / 6.1) ** 3)
     assert math.isclose(found.results[found.passing].numbers[0].value, (6.25 / 6.1) ** 3)
+    assert "6.25 mm raises its margin by some 13 %" in text_of([size_section(found)], width=400)
+
+
+def test_a_number_at_most_that_grows_with_a_size_has_a_margin_that_falls(tmp_path, monkeypatch):
+    """A mass of 95 g at 6.25 mm, of at most 100 g, limits it more than a strength of which 6.1 mm is enough."""
+    answer = Desk.answer
+
+    def weighed(desk, diameter, fidelity):
+        found = answer(desk, diameter, fidelity)
+        mass = replace(found.numbers[0], check="mass", quantity="total mass", unit="g", limit=100.0)
+        grams = 95.0 * diameter / 6.25
+        passes = Verdict.PASS if grams <= 100.0 else Verdict.FAIL
+        mass = replace(mass, value=grams, low=grams, high=grams, verdict=passes)
+        worst = Verdict.FAIL if Verdict.FAIL in (passes, found.verdict) else found.verdict
+        return replace(found, verdict=worst, numbers=(*found.numbers, mass))
+
+    monkeypatch.setattr(Desk, "answer", weighed)
+    found, values, _ = search(lambda d, f: ((d / 6.1) ** 3, 0.0), tmp_path, "6 mm..6.5 mm by 0.25 mm")
+    assert values[found.passing] == 6.25
+    told = text_of([size_section(found)], width=400)
+    assert "At 6.25 mm total mass" in told
+    assert "6.5 mm lowers its margin by some 3.8 %" in told  # 6.25/6.5
 
 
 def test_a_range_without_a_case_is_refused(tmp_path):

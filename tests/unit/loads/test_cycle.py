@@ -35,6 +35,7 @@ from alula.loads.states.case_motion import solve_case_motion, step_caveats
 from alula.loads.states.clearance import way_of
 from alula.reports.figures.motion.motion_figures import torque_figure
 from alula.reports.motion.linkage import linkage_text
+from alula.reports.motion.poses import range_text
 from alula.reports.sentences import told as sentence_of
 from alula.reports.sentences.verdicts import told_speed
 from alula.reports.turnable.moving import motion_linkage
@@ -437,6 +438,12 @@ def test_a_speed_that_changes_is_told_from_its_least_to_its_largest(tmp_path):
     assert told_speed(solve_case_motion(turned), "lift") == "−13.33 to 13.33 rpm"
     ordinary = validate(tables("knee", motion={"range": ["-20 deg", "5 deg"], "poses": 3, "speed": "6 rpm"}))
     assert told_speed(solve_case_motion(ordinary), "late-stance") == "6 rpm"
+
+
+def test_a_file_of_a_cycle_may_have_any_name(tmp_path):
+    (tmp_path / "gait{1}.csv").write_text(GAIT, encoding="utf-8")
+    told = range_text(solve_case_motion(knee(tmp_path, file="gait{1}.csv"))).text
+    assert told.startswith("Over the cycle of gait{1}.csv: from thigh = ")
 
 
 def test_reports_tell_where_in_the_cycle(tmp_path):

@@ -17,6 +17,7 @@ from alula.reports.commands.statics import statics_sections
 from alula.reports.sentences.verdicts import first_lines
 from alula.reports.workbench.editing.document import Document
 from alula.reports.workbench.editing.edits import EMPTY
+from alula.reports.workbench.live import verdicts
 from alula.reports.workbench.live.answers import motion_answer, pose_answer
 from alula.reports.workbench.live.verdicts import whole_answer
 
@@ -317,6 +318,14 @@ def test_a_section_that_passes_is_offered_with_all_that_has_to_follow_it():
     tables = tomllib.loads(text)
     assert [tables["links"][link]["part"] for link in ("crank", "coupler", "rocker")] == ["bar", "bar-2", "bar"]
     assert tables["parts"]["bar"] == tomllib.loads(DRAWN)["parts"]["bar"]
+
+
+def test_a_part_of_its_own_is_tried_beside_the_file_of_the_case(monkeypatch):
+    """Where parts from files and tables are sought: by the path of the case, not by the name of the part."""
+    names, read = [], verdicts.case_of
+    monkeypatch.setattr(verdicts, "case_of", lambda text, name: names.append(name) or read(text, name))
+    whole_answer(DRAWN, "folder/drawn.toml")
+    assert set(names) == {"folder/drawn.toml"}
 
 
 def test_a_link_that_is_no_bar_decides_and_no_section_is_offered():
