@@ -24,6 +24,7 @@ select.value = arguments[0];
 return select.value && select.dispatchEvent(new Event("change"));
 """
 WIDTH = """[data-path='["parts","bar","width"]']"""
+MINIMUM = """[data-path='["checks","strength","minimum"]']"""
 STEP = Path(__file__).parents[1] / "data" / "step" / "bell_crank.step"
 TEXT = "document.querySelector('#panel-text textarea').value"
 BLOBS = """
@@ -140,6 +141,26 @@ def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, ben
     browser.wait(f"{TEXT}.includes('width = \"16 mm\"')")
     browser.run(undo)
     browser.wait(f"""{TEXT} === {json.dumps(case.read_text(encoding="utf-8"))}""")
+
+
+def test_a_pure_number_stays_one_and_what_is_typed_is_saved(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
+    """With decimals as without; what is no number goes through and is told; Ctrl+S takes what has the cursor."""
+    address, case = bench
+    visit(browser, address)
+    before = browser.run(f"return {TEXT}")
+    open_panel(browser, "forms")
+    show(browser, "checks")
+    browser.wait(f"document.querySelector({MINIMUM!r})")
+    for typed, stands in (("2.5", "2.5"), ("3.5", "3.5"), ("6..5", '"6..5"'), (".5", "0.5"), ("4", "4")):
+        write(browser, MINIMUM, typed)
+        browser.wait(f"/^minimum = {stands}(?![.0-9])/m.test({TEXT})")
+        browser.wait(f"document.querySelector({MINIMUM!r}).value === {stands.strip(chr(34))!r}")
+    browser.element(MINIMUM).send_keys("\ue009a\ue000" + "2.75" + "\ue009s\ue000")
+    browser.wait(f"/^minimum = 2.75/m.test({TEXT})")
+    browser.wait("document.title.startsWith('mine')")
+    assert tomllib.loads(case.read_text(encoding="utf-8"))["checks"]["strength"]["minimum"] == 2.75
+    case.write_text(before, encoding="utf-8")
+    browser.wait(f"{TEXT} === {json.dumps(before)}")
 
 
 def test_what_is_wrong_stands_at_its_line_and_at_its_field(browser: chromium.Browser, bench: tuple[str, Path]) -> None:

@@ -210,6 +210,10 @@ def hand_over(draft: TomlText, link: str, point: str, to: str, name: str) -> Non
             draft.put((*path[:-1], "link"), to)
             draft.put(path, name)
     draft.remove(("links", link, "points", point))
+    held = value_at(draft.tables, ("tolerances",)) or {}
+    for entry, keys in _toleranced(draft, ("links", link, "points", point)):
+        other = ".".join(["links", to, "points", name, *keys[4:]])
+        draft.remove(("tolerances", entry)) if other in held else draft.rename(("tolerances", entry), other)
 
 
 def _is_point(path: Path) -> bool:
@@ -243,17 +247,33 @@ def free(draft: TomlText, path: Path, to: str) -> None:
 
 def _rename_tolerances(draft: TomlText, path: Path, to: str) -> None:
     """Rename within the paths of [tolerances]."""
-    for entry in list(value_at(draft.tables, ("tolerances",)) or ()):
-        keys = keys_of(entry)
-        if tuple(keys[: len(path)]) == path:
-            draft.rename(("tolerances", entry), ".".join([*keys[: len(path) - 1], to, *keys[len(path) :]]))
+    for entry, keys in _toleranced(draft, path):
+        draft.rename(("tolerances", entry), ".".join([*keys[: len(path) - 1], to, *keys[len(path) :]]))
+
+
+def _toleranced(draft: TomlText, path: Path) -> list[tuple[str, list[str]]]:
+    """Entries of [tolerances] that begin with a path, with their keys."""
+    every = [(entry, list(map(str, keys_of(entry)))) for entry in value_at(draft.tables, ("tolerances",)) or ()]
+    return [(entry, keys) for entry, keys in every if keys[: len(path)] == list(map(str, path))]
+
+
+def _remove_tolerances(draft: TomlText, path: Path) -> None:
+    """Remove tolerances of what was removed; those behind it in a list go with what they are of."""
+    for entry, _ in _toleranced(draft, path):
+        draft.remove(("tolerances", entry))
+    place = path[-1]
+    if isinstance(place, int):
+        n = len(path) - 1
+        behind = [(int(keys[n]), entry, keys) for entry, keys in _toleranced(draft, path[:-1]) if len(keys) > n]
+        for number, entry, keys in sorted(one for one in behind if one[0] > place):
+            draft.rename(("tolerances", entry), ".".join([*keys[:n], str(number - 1), *keys[n + 1 :]]))
 
 
 def remove(draft: TomlText, path: Path) -> None:
     """Remove an entry, with the records that cannot be without it.
 
     A link takes its joints along, a joint what acts about it or drives there, a point the loads and masses at it; a
-    check that was of removed links alone goes too. The points of a removed joint stay.
+    check that was of removed links alone goes too, and so do tolerances. The points of a removed joint stay.
 
     Parameters
     ----------
@@ -284,6 +304,7 @@ def remove(draft: TomlText, path: Path) -> None:
             remove(draft, one)
         else:
             draft.remove(one)
+            _remove_tolerances(draft, one)
 
 
 def _record(tables: Mapping[str, Any], one: Reference) -> Path:

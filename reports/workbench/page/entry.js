@@ -2,7 +2,7 @@
 
 import { edit, tell } from "./server.js";
 import { store } from "./store.js";
-import { scene, key } from "./scene.js";
+import { atInstant, scene, key } from "./scene.js";
 import { add, make } from "./elements.js";
 import { minus, number, size, toScreen } from "./view.js";
 
@@ -22,10 +22,13 @@ export function refresh() {
 export const isOpen = () => form !== null;
 
 /** Operations that change a force; it is written in the axes in which the file states it. */
-export function forceOperations(load, links, [x, y]) {
+export function forceOperations(load, links, wanted) {
   const turn = load.axes === "link" ? (-(links.find((one) => one.name === load.link)?.direction ?? 0) * Math.PI) / 180 : 0;
-  const own = [x * Math.cos(turn) - y * Math.sin(turn), x * Math.sin(turn) + y * Math.cos(turn)];
-  return own.map((part, k) => ({ op: "set", path: [...load.path, "force", k], value: `${Number(part.toFixed(6))} N` }));
+  const own = ([x, y]) => [x * Math.cos(turn) - y * Math.sin(turn), x * Math.sin(turn) + y * Math.cos(turn)].map((part) => Number(part.toFixed(6)));
+  const before = own(load.vector);
+  const set = own(wanted).map((part, k) => ({ op: "set", path: [...load.path, "force", k], value: `${part} N` }));
+  const changed = set.filter(({ value }, k) => value !== `${before[k]} N`); // the other one keeps its unit
+  return changed.length ? changed : set;
 }
 
 const parsed = (text) => (text ? Number(text.replace(",", ".")) : NaN);
@@ -50,7 +53,7 @@ function asked(handle) {
   /** A place with the lengths of links; what it is moved as. */
   const placed = (at, title, what, points, more = {}) => {
     const fields = [{ label: "x", value: at[0], unit: "mm" }, { label: "y", value: at[1], unit: "mm" }, ...lengths(links, points)];
-    const change = (texts, changed) => [...(changed[0] || changed[1] ? [{ op: "move", ...what, to: texts.slice(0, 2).map(parsed) }] : []), ...made(fields, texts, changed)];
+    const change = (texts, changed) => [...((changed[0] || changed[1]) && !atInstant() ? [{ op: "move", ...what, to: texts.slice(0, 2).map(parsed) }] : []), ...made(fields, texts, changed)];
     return { at, title, fields, change, ...more };
   };
   const made = (fields, texts, changed) => fields.flatMap((field, k) => (field.make && changed[k] ? [field.make(texts[k])] : []));

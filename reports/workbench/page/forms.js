@@ -8,6 +8,8 @@ import { same } from "./store.js";
 const SELECTED = { links: "link", joints: "joint" };
 const WORDS = { links: "link", joints: "joint", springs: "spring", tendons: "tendon", stops: "stop", materials: "material", parts: "part", load_cases: "load case", checks: "check" };
 const CASE = ""; // the section of what stands at the top of the file
+const NUMBER = /^[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?$/i;
+const MEASURED = /^[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?\s*([^\d\s.]\S*)$/i;
 const words = (key) => String(key).replaceAll("_", " ");
 const dotted = (path) => path.join(".");
 const key = (path) => JSON.stringify(path);
@@ -31,6 +33,8 @@ class Forms {
     this.later = perFrame(() => keepingFocus(this.holder, () => this.draw()));
     this.form.addEventListener("focusin", ({ target }) => this.entered(target));
     store.on("document", (now) => {
+      if (now?.revision !== this.revision) this.refused.clear(); // what stood there when it was refused has gone
+      this.revision = now?.revision;
       this.tables = now?.tables ?? this.tables;
       this.later();
     });
@@ -114,7 +118,12 @@ class Forms {
   back(kept) {
     const again = kept && this.find(JSON.parse(kept.path), "value");
     if (!again) return;
-    if (kept.value !== kept.was) again.value = kept.value;
+    if (kept.value !== kept.was) {
+      again.value = kept.value;
+      let sent = false; // a browser tells no change of what a script has put there
+      again.addEventListener("change", () => (sent = true), { once: true });
+      again.addEventListener("blur", () => sent || again.value === again.dataset.was || again.dispatchEvent(new Event("change")), { once: true });
+    }
     again.focus({ preventScroll: true });
     if (again.setSelectionRange && again.type === "text") again.setSelectionRange(kept.start, kept.start);
   }
@@ -380,7 +389,7 @@ class Forms {
       const here = [...path, place];
       const label = `${words(path.at(-1))} ${place + 1}`;
       const box = make("fieldset", { "data-path": key(here) }, make("legend", {}, label), this.error(here), this.inside(itemOf(option, place), inner, here, table));
-      if (!fixed) box.append(make("button", { type: "button", onclick: () => this.send([{ op: "remove", path: here }]), "aria-label": `Remove ${label}` }, "Remove"));
+      if (!fixed) box.append(make("button", { type: "button", onclick: () => this.send([{ op: "remove", path: here }], () => this.leave(path)), "aria-label": `Remove ${label}` }, "Remove"));
       return box;
     });
     const add = () => {
@@ -453,8 +462,8 @@ class Forms {
     if (!stated) return null;
     if (names) return names.find((name) => String(name) === stated) ?? stated;
     const numeric = options(node).some((option) => ["number", "integer"].includes(option.type));
-    if (!/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(stated)) return text;
-    const unit = was.match(/^[-+]?[\d.]+(?:e[-+]?\d+)?\s*([^\d\s]\S*)$/i)?.[1];
+    if (!NUMBER.test(stated)) return text;
+    const unit = NUMBER.test(was) ? null : was.match(MEASURED)?.[1];
     return unit ? `${stated} ${unit}` : numeric ? Number(stated) : text;
   }
 
@@ -470,6 +479,12 @@ class Forms {
     const own = Object.keys(this.tables[refers] ?? {});
     const library = refers === "materials" ? (options(node)[0].examples ?? node.examples ?? []) : [];
     return [...own, ...library.filter((name) => !own.includes(name))];
+  }
+
+  /** Let go of what is selected in a list, whose places have changed. */
+  leave(path) {
+    const { selected } = this.store.state;
+    if (selected?.path && same(selected.path.slice(0, path.length), path)) this.store.put("selected", null);
   }
 
   refuse(path, sentence) {

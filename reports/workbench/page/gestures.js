@@ -2,7 +2,7 @@
 
 import { store, same } from "./store.js";
 import { change, edit, newGesture, tell } from "./server.js";
-import { fromLocal, key, poseHandle, scene, toLocal } from "./scene.js";
+import { atInstant, fromLocal, key, poseHandle, scene, toLocal } from "./scene.js";
 import { arrowLength } from "./plane.js";
 import { ofPose } from "./motion.js";
 import * as entry from "./entry.js";
@@ -142,10 +142,7 @@ const isGround = (handle) => handle.kind === "link" && store.state.drawn.links.s
 
 function dragOf(handle, start) {
   const now = scene();
-  if (!now.still) {
-    tell("An instant of the motion is shown: use this pose, or go back to the case's pose, before you pull.");
-    return null;
-  }
+  if (atInstant()) return null;
   if (handle.kind === "joint" || handle.kind === "point") return movingTo(handle);
   if (handle.kind === "load") return forcing(handle, now, start);
   if (handle.kind === "pose") return turning(now, start);
@@ -295,9 +292,9 @@ function finish(handle, place, free) {
   const second = endAt(handle, place, free);
   store.put("ends", null);
   if (!first || same(first.end, second.end)) return;
-  const part = store.state.drawn?.links.find((link) => !link.ground && link.part)?.part ?? null;
+  if (atInstant()) return;
   const made = [...first.operations, ...second.operations];
-  if (store.state.tool === "link") edit([...made, { op: "link", name: null, from: first.end, to: second.end, part }]);
+  if (store.state.tool === "link") edit([...made, { op: "link", name: null, from: first.end, to: second.end }]);
   else if (first.end.at || second.end.at) tell("A joint takes two points: press on one and release on the other.");
   else edit([...made, { op: "join", ends: [first.end, second.end] }]);
 }
@@ -309,6 +306,7 @@ function use(handle, place, free) {
   if (tool === "remove" && handle) removeOf(handle);
   if (tool === "ground") {
     const one = endAt(handle, place, free);
+    if (atInstant()) return;
     if (!handle || isGround(handle)) edit([{ op: "ground", at: one.at }]);
     else edit([...one.operations, { op: "join", ends: [one.end, { ground: one.at }] }]);
   }
@@ -374,7 +372,7 @@ function nudge(handle, way, free) {
   if (!handle) return pan(-40 * way[0], 40 * way[1]);
   if (handle.kind === "cursor") return store.put("cursor", snap(plus(store.state.cursor, way, snapStep())));
   const now = scene();
-  if (!now.still) return;
+  if (atInstant()) return;
   if (performance.now() - nudged.time > 1500 || !same(nudged.handle, handle)) nudged.gesture = newGesture();
   nudged = { ...nudged, time: performance.now(), handle };
   const step = snapStep() / (free ? 100 : 1);

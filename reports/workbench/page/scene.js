@@ -1,10 +1,18 @@
 /** Where everything stands that is drawn: in the case's pose or at an instant of its motion, with what is held by hand. */
 
+import { tell } from "./server.js";
 import { store, same } from "./store.js";
 import { minus, plus, size, turned } from "./view.js";
 
 export const radians = (degrees) => (degrees * Math.PI) / 180;
 export const key = (link, point) => `${link}.${point}`;
+
+/** Whether an instant of the motion is shown, whose places are not those of the case; it is told then. */
+export function atInstant() {
+  if (scene()?.still !== false) return false;
+  tell("An instant of the motion is shown: use this pose, or go back to the case's pose, before you move anything.");
+  return true;
+}
 
 /** Links, joints and loads with their places; null while nothing is known. */
 export function scene({ drawn, motion, instant, held, loadCase } = store.state) {

@@ -64,6 +64,7 @@ export function mount(holder, store) {
     try {
       const record = await send(`model/${encodeURIComponent(name)}`);
       await viewer();
+      if (shown.name !== name || shown.model !== model) return; // another one was asked for meanwhile
       turned?.remove();
       const figure = make("figure", {}, make("figcaption", {}, name));
       figures.replaceChildren(figure);

@@ -112,10 +112,14 @@ function shortcut(event) {
     const writing = event.target.closest?.("input:not([type=checkbox], [type=range]), textarea");
     if (!route || (writing && route !== "save")) return;
     event.preventDefault();
+    if (writing) { // what was typed is sent before it is saved
+      writing.blur();
+      writing.focus({ preventScroll: true });
+    }
     change(route);
     return;
   }
-  if (event.altKey || event.target.closest?.("input, textarea, select, [contenteditable]")) return;
+  if (event.defaultPrevented || event.altKey || event.target.closest?.("input, textarea, select, [contenteditable]")) return;
   const tool = TOOLS.find(([, , key]) => key.toLowerCase() === letter || (key === "Delete" && event.key === "Backspace"));
   if (tool) choose(tool[0]);
   else if (letter === "0" && !document.querySelector("#plane .entry")) fitAll();

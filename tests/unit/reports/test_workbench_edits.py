@@ -441,6 +441,25 @@ def test_a_point_is_given_to_another_link_with_its_load() -> None:
     assert document.text == opened("four-bar").text
 
 
+def test_tolerances_go_with_what_they_are_of() -> None:
+    """With a point to another link; away with a force, of which those behind it keep theirs; away with a link."""
+    entries = {"links.rocker.points.P": "0.2 mm", "links.coupler.points.B": "0.1 mm"}
+    entries |= {f"load_cases.lift.forces.{n}": f"{n + 1} %" for n in range(3)}
+    text = opened("four-bar").text + "\n[tolerances]\n" + "\n".join(f'"{k}" = "{v}"' for k, v in entries.items())
+    document = Document(text + "\n")
+    forces = [{"link": "rocker", "at": "P", "force": ["0 N", f"-{n} N"]} for n in (1, 2, 3)]
+    document.apply([{"op": "set", "path": ["load_cases", "lift", "forces"], "value": forces}], None)
+    document.apply([{"op": "remove", "path": ["load_cases", "lift", "forces", 0]}], None)
+    left = {"load_cases.lift.forces.0": "2 %", "load_cases.lift.forces.1": "3 %"}
+    assert document.tables()["tolerances"] == {**{k: v for k, v in entries.items() if "points" in k}, **left}
+    pose = stated(document, "four-bar").solve_pose()
+    document.apply([{"op": "hand", "link": "rocker", "point": "P", "to": "coupler"}], pose)
+    assert document.tables()["tolerances"]["links.coupler.points.P"] == "0.2 mm"
+    stated(document, "four-bar")
+    document.apply([{"op": "remove", "path": ["links", "coupler"]}], None)
+    assert not any("coupler" in entry for entry in document.tables().get("tolerances", {}))
+
+
 def test_points_of_a_part_from_a_file_are_handed_neither_way() -> None:
     document = opened("step")
     links = document.tables()["links"]
