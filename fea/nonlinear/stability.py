@@ -28,7 +28,7 @@ from alula.fea.nonlinear.corotational import SUBDIVISIONS, subdivide
 from alula.fea.nonlinear.corotational_element import ElementResponse
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.geometry.linkage.placement import vector
-from alula.geometry.linkage.pose import Pose, constraint_jacobian, held_motion
+from alula.geometry.linkage.pose import Pose, constraint_jacobian
 
 Floats = NDArray[np.float64]
 
@@ -313,7 +313,7 @@ def _constraints(frame: LinkageFrame, pose: Pose) -> NDArray[np.float64]:
     rows = constraint_jacobian(pose)
     if frame.held is None:
         return rows
-    return np.vstack([rows, held_motion(pose, frame.held.coordinate(pose.linkage))])
+    return np.vstack([rows, frame.held.held_motion(pose)])
 
 
 def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:

@@ -13,9 +13,9 @@ from alula.geometry.linkage.closure import LoopClosure
 from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.open_loop import open_loop
-from alula.geometry.linkage.pose_record import CLOSED, Pose, constraint_jacobian, held_motion
+from alula.geometry.linkage.pose_record import CLOSED, Pose, constraint_jacobian, held_motion, turning
 
-__all__ = ["CLOSED", "NEAR_DEAD_POINT", "Pose", "constraint_jacobian", "freedom", "held_motion"]
+__all__ = ["CLOSED", "NEAR_DEAD_POINT", "Pose", "constraint_jacobian", "freedom", "held_motion", "turning"]
 __all__ += ["nearest_pose", "solve_pose"]
 
 Real = NDArray[np.float64]

@@ -149,7 +149,24 @@ class Pose:
         float
             The distance, without unit.
         """
-        matrix = np.vstack([constraint_jacobian(self, bonds=bonds), held_motion(self, driven)])
+        return self.distance_holding(held_motion(self, driven), bonds=bonds)
+
+    def distance_holding(self, row: Real, *, bonds: bool = True) -> float:
+        """How far the pose is from a dead point of what a row holds, as ``dead_point_distance`` counts it.
+
+        Parameters
+        ----------
+        row : ndarray, shape (coordinates,)
+            As of ``held_motion`` or ``turning``.
+        bonds : bool
+            As ``constraint_jacobian`` takes it.
+
+        Returns
+        -------
+        float
+            The distance, without unit.
+        """
+        matrix = np.vstack([constraint_jacobian(self, bonds=bonds), row])
         return float(np.linalg.svd(matrix, compute_uv=False)[-1])
 
 
@@ -169,6 +186,24 @@ def held_motion(pose: Pose, driven: Coordinate) -> Real:
         Row (coordinates,).
     """
     return _joint_motion(pose, driven.name)[0] if driven.slides else _held(pose.linkage, driven.name)
+
+
+def turning(pose: Pose, joint: str) -> Real:
+    """Row (coordinates,) that holds the angle between the two links of a joint.
+
+    Parameters
+    ----------
+    pose : Pose
+        The pose.
+    joint : str
+        Its name.
+
+    Returns
+    -------
+    ndarray
+        Row (coordinates,).
+    """
+    return _joint_motion(pose, joint)[2]
 
 
 def constraint_jacobian(pose: Pose, *, bonds: bool = True) -> Real:

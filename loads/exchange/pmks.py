@@ -18,6 +18,8 @@ from alula.loads.text.explain import printable
 _LETTERS = string.digits + string.ascii_uppercase + string.ascii_lowercase
 _DIGITS = _LETTERS + "_-"
 _PRISMATIC, _INPUT, _GROUNDED = 1, 2, 4
+_LOCAL, _OUTWARD = 1, 2
+"""Of a force: it turns with its link; its arrow leads from where it acts, and else to there."""
 _LENGTHS = {0: 25.4, 1: 10.0, 2: 1000.0}
 """Inch, cm, m [mm]."""
 _FORCES = {0: 4.4482216152605, 1: 1.0}
@@ -77,11 +79,14 @@ def _read(code: str, name: str) -> Sketch:
     called: dict[str, str] = {}
     pistons: list[list[str]] = []
     for text in blocks[1]:
-        root, kind, (one, own) = text[0] == "Y", text[1], _link(text[2:])
+        root, kind, (one, own, welded) = text[0] == "Y", text[1], _link(text[2:])
         if kind == "P":
             pistons.append(own)
         elif root:
             called[one] = plain_name(one, ["ground", *links])
+            called |= dict.fromkeys(
+                filter(None, welded), called[one]
+            )  # older ones name the part of a link that a force is on
             links[called[one]] = [ids[joint] for joint in own]
     riders = [_rider(own, joints, ids, name) for own in pistons]
     pins = {ids[one]: joint.at for one, joint in joints.items() if not joint.has(_PRISMATIC)}
@@ -116,17 +121,23 @@ def _joint(text: str, length: float) -> tuple[str, _Joint]:
     return one, _Joint(flags=flags, at=at, angle=_decimal(angle), carrier=slot[0] if slot else "")
 
 
-def _link(text: str) -> tuple[str, list[str]]:
-    """Return the name of a link and its joints, which an empty text ends."""
+def _link(text: str) -> tuple[str, list[str], list[str]]:
+    """Return the name of a link, its joints, which an empty text ends, and the links of which it is welded."""
     one, _, _, _, _, _, _, *own = text.split(",")
-    return one, own[: own.index("")]
+    end = own.index("")
+    return one, own[:end], own[end + 1 :]
 
 
 def _push(text: str, called: dict[str, str], length: float, force: float) -> Push:
-    _, link, _, *numbers = text[1:].split(",")
+    flags, (_, link, _, *numbers) = _digit(text[0]), text[1:].split(",")
     x, y, end_x, end_y, size = (_decimal(number) for number in numbers[:5])
-    along = complex(end_x - x, end_y - y)
-    return Push(link=called[link], at=complex(x, y) * length, force=size * force * along / abs(along))
+    along = complex(end_x - x, end_y - y) * (1.0 if flags & _OUTWARD else -1.0)
+    return Push(
+        link=called[link],
+        at=complex(x, y) * length,
+        force=size * force * along / abs(along),
+        turns=bool(flags & _LOCAL),
+    )
 
 
 def _rider(own: Sequence[str], joints: dict[str, _Joint], ids: dict[str, str], name: str) -> Rider:

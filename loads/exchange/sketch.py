@@ -39,7 +39,7 @@ class Rider:
 
 @dataclass(frozen=True, kw_only=True)
 class Push:
-    """A force on a link, global axes.
+    """A force on a link.
 
     Attributes
     ----------
@@ -47,12 +47,15 @@ class Push:
     at : complex
         Where [mm].
     force : complex
-        [N]
+        In global axes, in the pose of the sketch [N].
+    turns : bool
+        True where it turns with its link.
     """
 
     link: str
     at: complex
     force: complex
+    turns: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,7 +242,10 @@ def _loads(sketch: Sketch, bodies: dict[str, _Body]) -> Iterator[str]:
         yield "[[load_cases.load.forces]]"
         yield f"link = {_quoted(push.link)}"
         yield f"at = {_quoted(point)}"
-        yield f'force = ["{_number(push.force.real)} N", "{_number(push.force.imag)} N"]'
+        force = push.force / body.axis if push.turns else push.force
+        yield f'force = ["{_number(force.real)} N", "{_number(force.imag)} N"]'
+        if push.turns:
+            yield 'axes = "link"'
 
 
 def _assumed(sketch: Sketch) -> Push:

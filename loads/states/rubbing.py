@@ -50,7 +50,15 @@ def each_direction(case: Case, *, moving: bool = False) -> Case:
         return case
     found: dict[str, LoadCase] = {}
     for name, load_case in case.load_cases.items():
-        way = load_case.direction if load_case.direction != "both" else _known_way(case, load_case, moving)
+        way = known = _known_way(case, load_case, moving)
+        if load_case.direction != "both":
+            way = load_case.direction
+            if known not in ("", way):
+                raise CaseError(
+                    f"load_cases.{name}.direction: it is {way}, but "
+                    + ("the cycle says which way it moves" if known == CYCLE else f"its speed takes it {known}")
+                    + "; leave the direction out"
+                )
         ways = {name: way} if way else {f"{name} {way}": way for way in WAYS}
         found |= {title: load_case.model_copy(update={"direction": way}) for title, way in ways.items()}
     return case if found == case.load_cases else case.model_copy(update={"load_cases": found})

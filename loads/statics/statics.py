@@ -24,7 +24,7 @@ from alula.geometry.base.errors import CaseError
 from alula.geometry.linkage.coordinate import Coordinate, Measure
 from alula.geometry.linkage.linkage import Linkage
 from alula.geometry.linkage.placement import Complex, Placement
-from alula.geometry.linkage.pose import Pose
+from alula.geometry.linkage.pose import Pose, held_motion, turning
 from alula.loads.records.applied import Load, shifted
 from alula.loads.statics.effort import DriveEffort
 from alula.loads.statics.joint_reaction import JointReaction, travelled
@@ -92,8 +92,24 @@ class Drive:
             return Coordinate(self.joint, Measure.TRAVEL)
         return Coordinate(self.link)
 
+    def held_motion(self, pose: Pose) -> Real:
+        """Return the motion that the drive holds: of the driven link against the other link of its joint, or a travel.
+
+        Parameters
+        ----------
+        pose : Pose
+
+        Returns
+        -------
+        array (coordinates,)
+            As a row of ``constraint_jacobian``.
+        """
+        if self.effort(pose.linkage) is DriveEffort.FORCE:
+            return held_motion(pose, self.coordinate(pose.linkage))
+        return turning(pose, self.joint)
+
     def dead_point_distance(self, pose: Pose) -> float:
-        """Return how far a pose is from a dead point of the driven link or slider.
+        """Return how far a pose is from a dead point of the drive.
 
         Parameters
         ----------
@@ -104,7 +120,7 @@ class Drive:
         float
             As ``Pose.dead_point_distance`` counts it.
         """
-        return pose.dead_point_distance(self.coordinate(pose.linkage))
+        return pose.distance_holding(self.held_motion(pose))
 
     def sign(self, linkage: Linkage) -> float:
         """Return the sign of the driven link's motion in the joint's, which is that of its second link.

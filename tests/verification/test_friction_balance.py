@@ -184,6 +184,16 @@ def test_without_friction_and_with_none_all_is_the_same() -> None:
     assert np.array_equal(first.unknowns, second.unknowns)
 
 
+@pytest.mark.parametrize(("speed", "way"), [("60 rpm", "backward"), ("-60 rpm", "forward")])
+def test_a_direction_against_the_speed_is_refused(speed: str, way: str) -> None:
+    """Friction would help the drive then, whose power goes with its speed."""
+    against = [*PINS, f'load_cases.turning.speed="{speed}"', f'load_cases.turning.direction="{way}"']
+    with pytest.raises(CaseError, match=rf"load_cases\.turning\.direction: it is {way}, but its speed takes it"):
+        solve_case_statics(edited(STARTER, against))
+    other = {"backward": "forward", "forward": "backward"}[way]
+    assert set(solve_case_statics(edited(STARTER, [*against[:-1], f'load_cases.turning.direction="{other}"'])).forces)
+
+
 def test_redundant_linkage_takes_its_friction_from_the_frame() -> None:
     """The frame and its friction settle on forces for which the drive pays, by virtual work, for what is rubbed."""
     parallel = validate(parallel_cranks(friction=0.2))

@@ -161,6 +161,7 @@ def test_a_case_does_not_change_with_what_it_was_made_of_or_gave() -> None:
 def test_removing_from_a_list_keeps_changes_of_the_others() -> None:
     case = alula.read_case("spring-pedal").with_values({"load_cases.foot.forces.1.force": ["-55 N", "0 N"]})
     [force] = case.without("load_cases.foot.forces.0").load_cases["foot"].forces
+    assert [*case.without("load_cases.foot.forces.0", "load_cases.foot.forces.1").load_cases["foot"].forces] == []
     assert (force.link, force.force) == ("piston", (-55.0, 0.0))
 
 

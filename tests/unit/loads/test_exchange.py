@@ -7,6 +7,7 @@ import string
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import programs
 import pytest
 
@@ -91,6 +92,19 @@ def test_a_punch_of_pmks_presses_with_its_force():
     assert abs(reactions.drive_torque) < 400.0 * 1e-3 * abs(case.links["AB"].points["B"][0])
     assert {name: reactions.joints[name].magnitude for name in "AB"} == pytest.approx({"A": 400.0, "B": 400.0})
     assert math.hypot(*reactions.joints["slide-C"].force[:2]) < 0.4
+
+
+def test_a_force_of_pmks_may_press_and_may_turn_with_its_link():
+    """First the two flags: local, and outward, without which the arrow leads to where the force acts."""
+    pressing = case_of(read_pmks(whole(PUNCH, (".2F1,", ".0F1,")), "punch.txt"))
+    assert list(pressing.load_cases["load"].forces[0].force)[:2] == [0.0, -400.0]
+    turning = case_of(read_pmks(whole(PUNCH, (".2F1,", ".3F1,")), "punch.txt"))
+    [force] = turning.load_cases["load"].forces
+    assert force.axes == "link"
+    axes = turning.solve_pose().rotation("BC")
+    assert axes @ np.array(list(force.force)[:2]) == pytest.approx([0.0, 400.0], abs=1e-3)
+    old = whole(PUNCH, (".2F1,BC,", ".2F1,BCold,"), ("B,C,", "B,C,,BCold"))
+    assert case_of(read_pmks(old, "punch.txt")).load_cases["load"].forces[0].link == "BC"
 
 
 @pytest.mark.parametrize(

@@ -161,6 +161,14 @@ def test_the_smallest_singular_value_is_the_dead_point_distance() -> None:
         assert system.singular_values[-1] == pytest.approx(pose.dead_point_distance(Coordinate("AE")), rel=1e-9)
 
 
+@pytest.mark.parametrize("case", POSES)
+def test_the_drive_is_as_far_from_its_dead_point_as_its_equations_say(case: str) -> None:
+    """Also between two moving links, where neither angle alone is held."""
+    pose, drive = POSES[case]
+    system = assemble(pose.placement, drive, [])
+    assert drive.dead_point_distance(pose) == pytest.approx(system.singular_values[-1], rel=1e-9)
+
+
 def test_superposition_and_scaling() -> None:
     pose = wing()
     one, two = random_loads(pose, 1), random_loads(pose, 2)
