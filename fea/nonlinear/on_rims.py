@@ -449,12 +449,14 @@ def rim_factors(pins: PinStates) -> RimFactors:
         first, stopped = pins.tangent(pins.radii.value, pins.value), True
         wide = [first]
     else:
-        first, *others = pins.tangents
-        stopped, *held = pins.reaches(pins.standing[0]) <= small
+        (first, *others), radii = pins.leaning
+        stopped, *held = pins.reaches(radii) <= small
         wide = [first, *(one for one, still in zip(others, held, strict=True) if not still)]
     coarse = divided(pins, COARSE_SUBDIVISIONS)
     found = list[float]()
     for one in wide:  # what is no less than the least so far is not told
+        if found and min(found) <= 0.0:
+            break
         found.append(coarse.extended(one).factor(stopped=stopped and one is first, below=min(found, default=np.inf)))
     least = int(np.argmin(found))
     ends = found[0], found[least]

@@ -169,11 +169,17 @@ class PinStates:
         radii = self.radii.of(shares[None])[0][0]
         return tangent_of(radii, v, self.rims.g - self.rims.K @ v, self.radii.ties)
 
-    @property
-    def tangents(self) -> tuple[RimTangent, ...]:
-        """Those of the values first, then of ``states``."""
-        told = zip(*self._told, strict=True)
-        return (self.tangent(self.radii.value, self.value), *(self.tangent(shares, v) for shares, v in told))
+    @cached_property
+    def leaning(self) -> tuple[tuple[RimTangent, ...], Real]:
+        """Tangents, and radii (n, d) of all discs: of the values, of ``states``, and of these with one hole otherwise.
+
+        In ``states`` pins bear most, and so hold most. In those the linkage leans most where some hole is at either end
+        of what it may be, one at a time.
+        """
+        shares, value = self._told[0], self.radii.value
+        every = _distinct(np.vstack([shares, _at_ends(shares)]))[0] if len(value) else shares
+        others = [self.tangent(one, v) for one, v in zip(every, self.solved(every).v, strict=True)]
+        return (self.tangent(value, self.value), *others), self.radii.of(np.vstack([value, every]))[0]
 
     @property
     def standing(self) -> tuple[Real, Real]:
