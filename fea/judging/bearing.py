@@ -8,6 +8,7 @@ for which the ultimate tensile strength of the card stands; that in bearing is r
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,10 +127,17 @@ def weakest_eye(
     """
     factors = {}
     for link, (bears, own) in eyes_bear(case, name, joint).items():
-        force = max(float(pressing(case, link, way[link])) for way in ways)
-        factors[link] = own.on(load[link].on(Band.exact(force, WITHOUT)).inverse(bears))
+        force, most = _pressed(case, link, ways)
+        known = replace(Band.exact(force, WITHOUT), high=most, sources=COUPLES if most > force else ())
+        factors[link] = own.on(load[link].on(known).inverse(bears))
     weakest = min(factors, key=lambda link: factors[link].low)
     return weakest, factors[weakest]
+
+
+def _pressed(case: Case, link: str, ways: Sequence[Mapping[str, Real]]) -> tuple[float, float]:
+    """Largest force in an eye of all ways, and what may lie beyond these, which were sought."""
+    forces = [float(pressing(case, link, way[link])) for way in ways]
+    return max(forces), sought(forces)[1]
 
 
 def eyes_bear(case: Case, name: str, joint: str) -> dict[str, tuple[float, Scatter]]:
@@ -235,8 +243,8 @@ def bearing_outcome(
     spread = {link: load.times(grown(case, joint, link, ways[0], growth)) for link in every[0]}
     eye, factor = weakest_eye(case, one.name, joint, every, spread)
     found = one.outcome(load_case, factor)
-    force = max(float(pressing(case, eye, way[eye])) for way in every)
-    contact = contact_pressure(case, joint, eye, force * max(spread[eye].high, 1.0))
+    _, most = _pressed(case, eye, every)
+    contact = contact_pressure(case, joint, eye, most * max(spread[eye].high, 1.0))
     why = reason("bearing_on_eye", link=eye, why=found.reason)
     if contact is None:
         return found.because(why)

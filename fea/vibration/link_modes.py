@@ -7,7 +7,7 @@ the one that buckles it.
 """
 
 import math
-from collections.abc import Container
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -105,16 +105,32 @@ def link_modes(
         )
     case, pose = _standing(case)
 
-    def held(running: Container[str] = ()) -> LinkModes:
-        holding = link_holding(case, link, pose, running=running)
+    def held(holding: LinkHolding) -> LinkModes:
         if solid:
             return _by_solid(case, link, holding, count, carried, threads)
         return _by_beams(case, link, pose, holding, count, carried)
 
-    found, running = held(), {name for name, _ in running_holes(case) if link in case.joints[name].links}
+    tight = link_holding(case, link, pose)
+    found, running = held(tight), {name for name, _ in running_holes(case) if link in case.joints[name].links}
     if not running or link == case.linkage.ground:
         return found
-    return replace(found, modes=with_low_ends(found.modes, held(running).modes))
+    loose = link_holding(case, link, pose, running=running)
+    hinged = held(loose).modes
+    if len(loose.places) == 1:
+        hinged = _with_flapping(found.modes, hinged, loose.free - tight.free)
+    return replace(found, modes=with_low_ends(found.modes, hinged))
+
+
+def _with_flapping(modes: Sequence[Mode], hinged: Sequence[Mode], free: int) -> tuple[Mode, ...]:
+    """Modes with hinges beside those with tight pins, of a link on a single pin, which may flap out of the plane on it.
+
+    So many ways to flap have frequency 0, and are not among the modes with hinges. A link on two pins may roll about
+    the line through these, which neighbours and washers hinder.
+    """
+    still = replace(hinged[0], frequency=Band.exact(0.0))
+    across = [*[still] * free, *(mode for mode in hinged if mode.in_plane < 0.5)]
+    ways = {True: iter([mode for mode in hinged if mode.in_plane >= 0.5]), False: iter(across)}
+    return tuple(next(ways[mode.in_plane >= 0.5], still) for mode in modes)
 
 
 def _standing(case: Case) -> tuple[Case, Pose]:

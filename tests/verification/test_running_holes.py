@@ -1,6 +1,7 @@
 """Frequencies with hinges at holes in which pins may run: a four-bar that is known, bars on two pins, verdicts."""
 
 import math
+import tomllib
 from functools import cache
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from tilting_pins import checked, four_bar, in_one_layer
 
+from alula.fea.check.run import check_case
 from alula.fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from alula.fea.frame.build import build_frame
 from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
@@ -20,6 +22,7 @@ from alula.fea.vibration.modes import frequency
 from alula.fea.vibration.running_holes import running_holes, with_hinges
 from alula.geometry.joints.joint import Joint
 from alula.loads.case.case import Case
+from alula.loads.case.case_file import validate
 from alula.loads.states.masses import part_masses
 from alula.reports.sentences import told as in_words
 
@@ -144,3 +147,37 @@ def test_heads_without_a_gap_leave_no_hinge():
 
 def linkage_outcomes() -> list[CheckOutcome]:
     return [one for one in frequency_outcomes(asked_frequencies(plastic())) if one.subject == LINKAGE]
+
+
+ARM = """
+schema_version = 1
+title = "An arm on one pin"
+layer_spacing = "6.5 mm"
+links.base = { ground = true, layer = 0, points.O = ["0 mm", "0 mm"] }
+links.arm = { part = "bar", layer = 1, points.O = ["0 mm", "0 mm"], points.P = ["120 mm", "0 mm"] }
+joints.O = { links = ["base", "arm"], pin_diameter = "4.5 mm", fit = { arm = "press", base = "H8/f7" } }
+pose = { coordinate = "arm", angle = "40 deg" }
+drive = { link = "arm", joint = "O" }
+load_cases.lift = { speed = "4000 rpm", own_weight = true }
+checks.f = { type = "frequency", minimum = 4 }
+[parts.bar]
+shape = "bar"
+material = "aluminium-6061-t6"
+width = "8 mm"
+thickness = "6 mm"
+fillet_radius = "2 mm"
+"""
+
+
+@pytest.mark.parametrize("solid", [False, True])
+def test_an_arm_on_one_running_pin_may_flap_and_swings_in_its_plane_as_held_by_the_drive(solid) -> None:
+    """It tilts about two axes: its first two modes out of the plane begin at 0, those in the plane do not."""
+    case = validate(tomllib.loads(ARM))
+    modes = link_modes(case, "arm", solid=solid).modes
+    out, inside = ([mode.frequency for mode in modes if (mode.in_plane < 0.5) is flaps] for flaps in (True, False))
+    assert [band.low for band in out[:2]] == [0.0, 0.0]
+    assert all(band.low > 0.8 * band.value for band in inside)
+    assert len(inside) > 0
+    found = check_case(case, name="arm", fidelity="solid" if solid else "beam")
+    [own] = [one for one in found.load_cases["lift"].checks if str(one.subject) == "arm"]
+    assert (own.value.low, own.verdict) == (0.0, Verdict.UNDECIDED)
