@@ -328,7 +328,7 @@ def main() -> None:
     if sys.argv[1:] == ["estimates"]:
         kept = json.loads(KEPT.read_text())
     else:
-        kept = circumstances()
+        kept = circumstances("calibration")
         for shape, parts in SHAPES.items():
             kept[shape] = {"parts": []}
             for number, (body, nu) in enumerate(bodies(shape)):

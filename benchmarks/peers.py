@@ -200,7 +200,7 @@ def save(rows: list[dict[str, Any]], options: argparse.Namespace) -> None:
             row["alula_over_this"] = round(own["wall_s"] / row["wall_s"], 3)
             row["alula_cpu_over_this"] = round(own["cpu_s"] / row["cpu_s"], 3)
     RESULTS.parent.mkdir(exist_ok=True)
-    record = circumstances() | {"threads": options.threads, "rows": rows}
+    record = circumstances("peers") | {"threads": options.threads, "rows": rows}
     RESULTS.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 

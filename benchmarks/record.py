@@ -1,10 +1,14 @@
 """What every result records beside its numbers: when, on what, in which versions, of which sources of alula."""
 
+import ast
+import hashlib
 import json
 import os
 import platform
+import re
 import time
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -12,29 +16,40 @@ from typing import Any
 from alula.geometry.keeping.kept import sources_digest
 
 HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
 RESULTS = HERE / "results"
 LOAD = float(os.environ.get("ALULA_BENCH_LOAD", os.getloadavg()[0]))
 """How busy the machine was before; of several benchmarks in turn, before the first."""
+COMMANDED = frozenset(("stages", "page", "workbench", "commits"))
+"""Results that run whole commands, pages or the workbench: these stand on all sources, and on ``reports``, too."""
 QUIET = 0.5
 """Load average above which no time means much."""
+COMPUTING = ("geometry", "loads", "fea")
+"""Packages whose sources count, with the tables of numbers that stand in them."""
+CASES = ROOT / "loads" / "cases"
+"""Built-in cases, which are read by their names."""
+_FOLDERS = (ROOT, ROOT / "benchmarks", *(ROOT / "tests" / name for name in (".", "verification", "validation")))
+_SCRIPT = re.compile(r"[a-z_]+\.py|test_[a-z_]+|[a-z_]+(\.[a-z_]+)+")
 
 
-def circumstances() -> dict[str, Any]:
-    """Date, machine, versions, and how busy the machine was (load average over a minute)."""
+def circumstances(name: str) -> dict[str, Any]:
+    """Date, machine, versions and sources of a result, and how busy the machine was (load average over a minute)."""
     return {
         "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "machine": f"{platform.machine()}, {os.cpu_count()} cores",
         "processor": processor(),
         "load_average": round(LOAD, 2),
-        "alula": {"version": version("alula")} | sources(),
+        "alula": {"version": version("alula")} | sources(name),
         "versions": f"Python {platform.python_version()}, "
         + ", ".join(f"{name} {version(name)}" for name in ("alula", "numpy", "scipy", "scikit-fem", "gmsh")),
     }
 
 
-def sources() -> dict[str, str]:
-    """Digests of alula's own sources: of all that compute, and of the commands and pages around them."""
-    return {"sources": sources_digest(), "commands": sources_digest(("reports",))}
+def sources(name: str) -> dict[str, str]:
+    """Digests of alula's own sources: of those that a result stands on, and of the commands and pages around them."""
+    script = "widths" if name.startswith("widths") else name.partition("-")[0]  # stability-scale, widths_auto
+    own = sources_digest() if name in COMMANDED else sources_of(script)
+    return {"sources": own, "commands": sources_digest(("reports",))}
 
 
 def stamp(record: dict[str, Any]) -> str:
@@ -59,11 +74,76 @@ def processor() -> str:
     return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
+def sources_of(script: str) -> str:
+    """Return the SHA-256 of the sources that a benchmark stands on: what it imports, and what that imports.
+
+    A result is older than the code where one of these has changed, and not where any has: a number of a solver stays as
+    a check of pins is mended. Imports within functions count.
+
+    Parameters
+    ----------
+    script : str
+        Its name, such as "solvers".
+
+    Returns
+    -------
+    str
+        In hexadecimal.
+    """
+    return _digest(frozenset(_reached(ROOT / "benchmarks" / f"{script}.py")))
+
+
+@cache
+def _digest(files: frozenset[Path]) -> str:
+    own = {file for file in files if file.relative_to(ROOT).parts[0] in COMPUTING}
+    tables = {table for folder in {file.parent for file in own} | {CASES} for table in folder.rglob("*.toml")}
+    found = hashlib.sha256()
+    for path in sorted(own | tables):
+        found.update(f"{path.relative_to(ROOT).as_posix()}\n".encode() + path.read_bytes())
+    return found.hexdigest()
+
+
+@cache
+def _reached(script: Path) -> set[Path]:
+    """All files that a script imports, runs or names, and those that these import."""
+    found, left = {script}, [script]
+    while left:
+        new = _imported(left.pop()) - found
+        found |= new
+        left += new
+    return found
+
+
+@cache
+def _imported(file: Path) -> set[Path]:
+    """Files that a file imports; of a benchmark also scripts and modules whose names are texts in it."""
+    names = set[str]()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and file.parent.name == "benchmarks":
+            names |= {node.value.removesuffix(".py")} if _SCRIPT.fullmatch(node.value) else set()
+    return {found for name in names if (found := _file(name)) is not None}
+
+
+def _file(module: str) -> Path | None:
+    """The file of a module of alula, of the benchmarks or of the tests; that of ``import alula`` is its face."""
+    if module == "alula":
+        return ROOT / "alula" / "__init__.py"
+    parts = module.removeprefix("alula.").split(".")
+    for folder in _FOLDERS:
+        if (file := folder.joinpath(*parts).with_suffix(".py")).is_file():
+            return file
+    return None
+
+
 def save(name: str, record: dict[str, Any]) -> Path:
     """Write results/<name>.json with the circumstances in front."""
     RESULTS.mkdir(exist_ok=True)
     path = RESULTS / f"{name}.json"
-    path.write_text(json.dumps(circumstances() | record, indent=1) + "\n", encoding="utf-8")
+    path.write_text(json.dumps(circumstances(name) | record, indent=1) + "\n", encoding="utf-8")
     return path
 
 

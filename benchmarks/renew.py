@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from alula.geometry.base.version import alula_version
-from benchmarks.record import QUIET, RESULTS, sources
+from benchmarks.record import COMMANDED, QUIET, RESULTS, sources
 from benchmarks.run import BENCHMARKS
 from benchmarks.stability import ROWS
 
@@ -42,8 +42,6 @@ COMMANDS: dict[str, list[str]] = {
     PAGES: ["pages"],
 }
 """Result -> what makes it anew, as a module and its arguments."""
-COMMANDED = frozenset(("stages", "page", "workbench", "commits"))
-"""Results that run whole commands, pages or the workbench: these stand on ``reports``, too."""
 
 
 def results() -> dict[str, dict[str, Any]]:
@@ -70,8 +68,8 @@ def stale(name: str, record: dict[str, Any], version: str, now: dict[str, str]) 
 
 def main() -> None:
     """List, or renew what is named."""
-    found, version, now = results(), alula_version(), sources()
-    why = {name: stale(name, record, version, now) for name, record in found.items()}
+    found, version = results(), alula_version()
+    why = {name: stale(name, record, version, sources(name)) for name, record in found.items()}
     names = sys.argv[1:]
     if not names:
         for name, record in found.items():

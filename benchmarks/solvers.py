@@ -160,7 +160,7 @@ def main() -> None:
             growth = math.log(last["cpu_s"] / first["cpu_s"]) / math.log(last["unknowns"] / first["unknowns"])
             print(f"{solver}: processor time grows with power {growth:.2f} of the unknowns")
     RESULTS.parent.mkdir(exist_ok=True)
-    record = circumstances() | {"threads": options.threads, "curved": options.curved, "runs": runs}
+    record = circumstances("solvers") | {"threads": options.threads, "curved": options.curved, "runs": runs}
     RESULTS.write_text(json.dumps(record, indent=1) + "\n")
 
 

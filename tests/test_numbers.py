@@ -12,8 +12,8 @@ from pages import renewed_numbers
 from programs import ROOT
 
 from benchmarks import calibration, eye_limits, tables
-from benchmarks.record import RESULTS, printed
-from benchmarks.renew import COMMANDED, older, results, stale
+from benchmarks.record import COMMANDED, RESULTS, _reached, printed, sources
+from benchmarks.renew import older, results, stale
 
 NOW = {"sources": "ab", "commands": "12"}
 OF = {"alula": {"version": "1.0"} | NOW}
@@ -68,6 +68,21 @@ def test_a_result_is_older_than_the_code(record: dict[str, dict[str, str]], why:
 def test_of_a_changed_command_only_results_that_run_commands_are_older() -> None:
     changed = {"alula": OF["alula"] | {"commands": "34"}}
     assert [stale(name, changed, "1.0", NOW) for name in ("draws", "stages")] == ["", "commands have changed since"]
+
+
+def test_a_result_stands_on_what_its_benchmark_imports_wherever_it_does_so() -> None:
+    """Also within functions, by scripts that it runs and tests that it names; solvers stand on no pins, checks do."""
+    reached = {
+        name: {file.relative_to(ROOT).as_posix() for file in _reached(ROOT / "benchmarks" / f"{name}.py")}
+        for name in ("peers", "verification", "draws", "widths")
+    }
+    assert {"fea/solvers/two_level.py", "fea/solvers/direct.py", "benchmarks/peer_alula.py"} <= reached["peers"]
+    assert not any(file.startswith(("fea/pins/", "fea/judging/")) for file in reached["peers"])
+    assert "tests/validation/test_nafems.py" in reached["verification"]
+    assert {"fea/pins/states.py", "fea/judging/bearing.py"} <= reached["draws"] & reached["widths"]
+    assert "alula/__init__.py" in reached["widths"]  # it imports alula as users do
+    assert len({sources(name)["sources"] for name in ("solvers", "draws", "stages")}) == 3
+    assert sources("stability-scale")["sources"] == sources("stability-buckling")["sources"]
 
 
 def test_results_that_run_commands_pages_or_the_workbench_are_known() -> None:
