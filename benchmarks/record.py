@@ -47,7 +47,7 @@ def circumstances(name: str) -> dict[str, Any]:
 
 def sources(name: str) -> dict[str, str]:
     """Digests of alula's own sources: of those that a result stands on, and of the commands and pages around them."""
-    script = "widths" if name.startswith("widths") else name.partition("-")[0]  # stability-scale, widths_auto
+    script = "eye_limits" if name == "eyes" else re.split("-|_auto|_beam|_solid", name)[0]  # of stability-scale
     own = sources_digest() if name in COMMANDED else sources_of(script)
     return {"sources": own, "commands": sources_digest(("reports",))}
 

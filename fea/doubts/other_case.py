@@ -215,6 +215,8 @@ class Doubt:
             return self.cause.scatter(self.stated, lambda one: one.numbers[link][i])
 
         def of_joint(name: str) -> Scatter:
+            if not self.stated.reactions.joints[name].magnitude > 0.0:
+                return Scatter()  # what others have there may be rounding
             return self.cause.scatter(self.stated, lambda one: one.reactions.joints[name].magnitude)
 
         stress, displacement = ({link: of_link(link, i) for link in self.stated.plates} for i in (0, 1))

@@ -173,7 +173,12 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         low, high = min(one.low, *(pin.low for pin in held)), max(one.high, *(pin.high for pin in held))
         return Scatter(low=max(low, 0.0), high=high, sources=(source,))
 
-    return _OnLink(answers=answers, peaks=numbers[:2], by_hand=numbers[2:], rules=(with_couples, with_couples, alone))
+    def as_column(value: float, found: Sequence[float]) -> Scatter:
+        """A link that nothing presses as stated is no column; what play presses is as little as it moves."""
+        return alone(value, found) if value > 0.0 else Scatter()
+
+    rules = (with_couples, with_couples, as_column)
+    return _OnLink(answers=answers, peaks=numbers[:2], by_hand=numbers[2:], rules=rules)
 
 
 def _numbers(case: Case, link: str, answers: Sequence[Plates]) -> Real:

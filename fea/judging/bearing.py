@@ -17,6 +17,7 @@ from alula.fea.asked.asked import Asked
 from alula.fea.beam.cut_free import seat
 from alula.fea.beam.pin_between import first_moment
 from alula.fea.common.band import Band
+from alula.fea.common.plates import ALIKE
 from alula.fea.common.reason import reason
 from alula.fea.common.scatter import Scatter, load_scatter, of_sum, strength_scatter
 from alula.fea.common.sought import sought
@@ -128,7 +129,7 @@ def weakest_eye(
     factors = {}
     for link, (bears, own) in eyes_bear(case, name, joint).items():
         force, most = _pressed(case, link, ways)
-        known = replace(Band.exact(force, WITHOUT), high=most, sources=COUPLES if most > force else ())
+        known = replace(Band.exact(force, WITHOUT), high=most, sources=COUPLES if most > force * (1.0 + ALIKE) else ())
         factors[link] = own.on(load[link].on(known).inverse(bears))
     weakest = min(factors, key=lambda link: factors[link].low)
     return weakest, factors[weakest]

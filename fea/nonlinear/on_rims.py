@@ -444,14 +444,11 @@ def rim_factors(pins: PinStates) -> RimFactors:
     -------
     RimFactors
     """
-    small = LARGE * span(pins.rims.frame.pose)
-    if pins.reaches(pins.radii.largest)[0] <= small:  # nor does any other state count: none is sought
-        first, stopped = pins.tangent(pins.radii.value, pins.value), True
-        wide = [first]
-    else:
-        (first, *others), radii = pins.leaning
-        stopped, *held = pins.reaches(radii) <= small
-        wide = [first, *(one for one, still in zip(others, held, strict=True) if not still)]
+    small, first = LARGE * span(pins.rims.frame.pose), pins.tangent(pins.radii.value, pins.value)
+    stopped, wide = True, [first]
+    if pins.reaches(pins.radii.largest)[0] > small:  # else no other state counts: none is sought
+        stopped = bool(pins.reaches(pins.radii.of(pins.radii.value[None])[0])[0] <= small)
+        wide += pins.leaning(small)
     coarse = divided(pins, COARSE_SUBDIVISIONS)
     found = list[float]()
     for one in wide:  # what is no less than the least so far is not told

@@ -169,17 +169,27 @@ class PinStates:
         radii = self.radii.of(shares[None])[0][0]
         return tangent_of(radii, v, self.rims.g - self.rims.K @ v, self.radii.ties)
 
-    @cached_property
-    def leaning(self) -> tuple[tuple[RimTangent, ...], Real]:
-        """Tangents, and radii (n, d) of all discs: of the values, of ``states``, and of these with one hole otherwise.
+    def leaning(self, small: float) -> tuple[RimTangent, ...]:
+        """Return how pins may move on where the linkage may lean: in ``states`` and in these with one hole otherwise.
 
         In ``states`` pins bear most, and so hold most. In those the linkage leans most where some hole is at either end
         of what it may be, one at a time.
+
+        Parameters
+        ----------
+        small : float
+            How far no point of the linkage moves by rims in states that are left out [mm].
+
+        Returns
+        -------
+        tuple of RimTangent
         """
-        shares, value = self._told[0], self.radii.value
-        every = _distinct(np.vstack([shares, _at_ends(shares)]))[0] if len(value) else shares
-        others = [self.tangent(one, v) for one, v in zip(every, self.solved(every).v, strict=True)]
-        return (self.tangent(value, self.value), *others), self.radii.of(np.vstack([value, every]))[0]
+        shares = self._told[0]
+        every = _distinct(np.vstack([shares, _at_ends(shares)]))[0] if len(self.radii.value) else shares
+        wide = every[self.reaches(self.radii.of(every)[0]) > small]
+        return (
+            tuple(self.tangent(one, v) for one, v in zip(wide, self.solved(wide).v, strict=True)) if len(wide) else ()
+        )
 
     @property
     def standing(self) -> tuple[Real, Real]:

@@ -539,7 +539,7 @@ class StatedCase:
         found = self
         every = [keys_of(text_of(path, "without", "path of an entry")) for path in paths]
         # Of a list the last ones first: where another one is removed, those behind it move.
-        for keys in sorted(every, key=lambda keys: [-int(key) if key.isdecimal() else 0 for key in keys]):
+        for keys in sorted(every, key=lambda keys: [*(-int(key) if key.isdecimal() else 0 for key in keys), 1]):
             if len(keys) == 1 and keys[0] in Case.derived(found._tables):  # what it sets stays
                 tables = changed_tables(found._tables, found._changes)
                 others: tuple[Change, ...] = ()

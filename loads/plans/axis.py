@@ -14,6 +14,7 @@ MOST_VALUES = 1_000_000
 """Values of one range."""
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?:\s+by\s+(?P<step>.*))?", re.DOTALL)
+_STEP = re.compile(r"\s+by\s")
 _FITS = 1e-6
 """Share of a step by which a range may miss a whole number of them."""
 
@@ -161,7 +162,7 @@ def _range(path: str, text: str) -> Axis:
 def _without_count(text: str) -> tuple[str, str | None]:
     """Return a range, and what stands behind its last slash where that is no unit, as it is in N/mm."""
     ends, slash, last = text.rpartition("/")
-    if slash and ".." in ends:
+    if slash and ".." in ends and not _STEP.search(text):
         try:
             unit_of(last.strip() or "?")
         except CaseError:

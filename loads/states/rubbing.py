@@ -45,20 +45,23 @@ def each_direction(case: Case, *, moving: bool = False) -> Case:
     -------
     Case
         The same where no joint has friction.
+
+    Raises
+    ------
+    CaseError
+        For a load case whose direction is against its speed.
     """
     if not rubbing_joints(case):
         return case
     found: dict[str, LoadCase] = {}
     for name, load_case in case.load_cases.items():
-        way = known = _known_way(case, load_case, moving)
-        if load_case.direction != "both":
-            way = load_case.direction
-            if known not in ("", way):
-                raise CaseError(
-                    f"load_cases.{name}.direction: it is {way}, but "
-                    + ("the cycle says which way it moves" if known == CYCLE else f"its speed takes it {known}")
-                    + "; leave the direction out"
-                )
+        way = load_case.direction if load_case.direction != "both" else _known_way(case, load_case, moving)
+        if load_case.speed * WAYS.get(way, 0.0) < 0.0:
+            rpm = load_case.speed * 30.0 / math.pi
+            raise CaseError(
+                f"load_cases.{name}.direction: it is {way}, against the speed of {rpm:.4g} "
+                'rpm that the load case or the motion states; leave it out, or state speed = "0 rpm" in the load case'
+            )
         ways = {name: way} if way else {f"{name} {way}": way for way in WAYS}
         found |= {title: load_case.model_copy(update={"direction": way}) for title, way in ways.items()}
     return case if found == case.load_cases else case.model_copy(update={"load_cases": found})

@@ -207,7 +207,7 @@ def test_a_displacement_whose_band_has_no_end_says_why(case, why):
         (partial(linear, 5.0), "fail"),
         (partial(wing, 7.0, fits=False), "fail"),
         pytest.param(partial(wing, 7.5, fits=False), "undecided", marks=pytest.mark.converged),
-        (partial(wing, 8.0, fits=False), "pass"),
+        (partial(wing, 8.0, fits=False), "undecided"),  # it may lean where a hole is wide that is not stated
         pytest.param(partial(wing, 6.5), "fail", marks=pytest.mark.converged),  # play of its pins reaches further
         (partial(wing, 7.0), "undecided"),
         pytest.param(partial(wing, 9.0), "pass", marks=pytest.mark.converged),

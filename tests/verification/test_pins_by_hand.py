@@ -187,7 +187,9 @@ def test_a_seated_pin_does_not_touch_its_heads():
     assert one is not None
     assert other is not None
     assert other.value == pytest.approx(one.value, abs=1e-7)
-    assert one.leaning[0][0].touching == other.leaning[0][0].touching == 2
+    assert (
+        one.tangent(one.radii.value, one.value).touching == other.tangent(other.radii.value, other.value).touching == 2
+    )
 
 
 def test_the_longer_hole_of_two_with_one_clearance_bears_more():

@@ -94,12 +94,12 @@ def test_without_clearance_the_factor_is_that_of_tight_pins(material):
     path = divided(pins, COARSE_SUBDIVISIONS)
     for clearance, near in ((1e-6, 1e-4), (1e-5, 2e-3)):
         small = with_clearance(pins, clearance)
-        assert path.extended(small.leaning[0][0]).factor() == pytest.approx(tight, rel=near)
+        assert path.extended(small.tangent(small.radii.value, small.value)).factor() == pytest.approx(tight, rel=near)
 
 
 def test_a_factor_is_told_where_it_is_less_than_one_that_is_known():
     pins = with_clearance(pins_of(loaded(PLA, ["0 N", "-5 N"])), 0.01)
-    known = divided(pins, COARSE_SUBDIVISIONS).extended(pins.leaning[0][0])
+    known = divided(pins, COARSE_SUBDIVISIONS).extended(pins.tangent(pins.radii.value, pins.value))
     factor = known.factor()
     assert 0.0 < factor < math.inf
     for share in (0.5, 0.999):
@@ -114,7 +114,11 @@ def test_condensed_to_its_rims_the_divided_frame_is_that_of_the_programme():
     pins = pins_of(loaded(PLA, ["0 N", "-1 N"]))
     path = divided(pins, COARSE_SUBDIVISIONS)
     found = path.extended(
-        replace(pins.leaning[0][0], ways=np.eye(len(pins.rims.g)), stiffness=np.ones(len(pins.rims.g)))
+        replace(
+            pins.tangent(pins.radii.value, pins.value),
+            ways=np.eye(len(pins.rims.g)),
+            stiffness=np.ones(len(pins.rims.g)),
+        )
     )
     count = found.allowed.shape[1]
     K, C, D = found.plain[:count, :count], found.plain[:count, count:], found.plain[count:, count:]
@@ -157,8 +161,8 @@ def test_a_bar_hung_on_a_pin_rolls_as_a_pendulum(force, clearance):
 def test_a_tie_that_hangs_on_one_rim_at_either_end_rolls_without_stiffness():
     """Its coupler, of the aluminium four-bar at 20 N, turns about the line through both rims: forces do no work."""
     pins = pins_of(loaded(ALUMINIUM, ["0 N", "-20 N"], TIGHT))
-    assert pins.leaning[0][0].touching == 2
-    known = divided(pins, COARSE_SUBDIVISIONS).extended(pins.leaning[0][0])
+    assert pins.tangent(pins.radii.value, pins.value).touching == 2
+    known = divided(pins, COARSE_SUBDIVISIONS).extended(pins.tangent(pins.radii.value, pins.value))
     work = np.linalg.eigvalsh(known.free.T @ known.pressed @ known.free)
     assert np.abs(work).min() < 1e-9 * np.abs(work).max()
     assert (work > -1e-9 * np.abs(work).max()).all()
@@ -196,7 +200,7 @@ def test_a_lean_counts_where_it_may_be_a_large_displacement(share, holds):
     pins = pins_of(loaded(PLA, ["0 N", "-5 N"]))
     limit = LARGE * span(pins.rims.frame.pose) / pins.reaches(with_clearance(pins, 1.0).radii.largest)[0]
     pins = with_clearance(pins, share * limit)
-    assert divided(pins, COARSE_SUBDIVISIONS).extended(pins.leaning[0][0]).factor() == 0.0
+    assert divided(pins, COARSE_SUBDIVISIONS).extended(pins.tangent(pins.radii.value, pins.value)).factor() == 0.0
     found = rim_factors(pins)
     assert (found.value > 2.0, found.low > 2.0) == (holds, holds)
 
@@ -238,7 +242,7 @@ def test_the_linkage_is_told_with_pins_in_their_holes(clearance):
     [found] = [one for one in result.checks if one.subject == LINKAGE and one.quantity is Quantity.BUCKLING_FACTOR]
     pins = pins_of(checked(data))
     tight = buckling_factor(pins.rims.frame.model)
-    factor = divided(pins, SUBDIVISIONS).extended(pins.leaning[0][0]).factor()
+    factor = divided(pins, SUBDIVISIONS).extended(pins.tangent(pins.radii.value, pins.value)).factor()
     assert 0.0 < factor < 0.98 * tight
     assert found.value.value == pytest.approx(factor, rel=1e-3)
     assert found.value.low < factor

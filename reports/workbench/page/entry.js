@@ -22,12 +22,12 @@ export function refresh() {
 export const isOpen = () => form !== null;
 
 /** Operations that change a force; it is written in the axes in which the file states it. */
-export function forceOperations(load, links, wanted) {
+export function forceOperations(load, links, wanted, alone = false) {
   const turn = load.axes === "link" ? (-(links.find((one) => one.name === load.link)?.direction ?? 0) * Math.PI) / 180 : 0;
   const own = ([x, y]) => [x * Math.cos(turn) - y * Math.sin(turn), x * Math.sin(turn) + y * Math.cos(turn)].map((part) => Number(part.toFixed(6)));
   const before = own(load.vector);
   const set = own(wanted).map((part, k) => ({ op: "set", path: [...load.path, "force", k], value: `${part} N` }));
-  const changed = set.filter(({ value }, k) => value !== `${before[k]} N`); // the other one keeps its unit
+  const changed = alone ? set.filter(({ value }, k) => value !== `${before[k]} N`) : []; // the other one keeps its unit
   return changed.length ? changed : set;
 }
 
@@ -75,7 +75,7 @@ function asked(handle) {
       const change = (texts, changed) => {
         const [newtons, degrees, fx, fy] = texts.map(parsed);
         const way = (degrees * Math.PI) / 180;
-        return forceOperations(load, now.links, changed[0] || changed[1] ? [newtons * Math.cos(way), newtons * Math.sin(way)] : [fx, fy]);
+        return forceOperations(load, now.links, changed[0] || changed[1] ? [newtons * Math.cos(way), newtons * Math.sin(way)] : [fx, fy], true);
       };
       return { at: load.at, title: `Load on ${load.link}`, fields, change };
     }),
