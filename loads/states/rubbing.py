@@ -57,10 +57,9 @@ def each_direction(case: Case, *, moving: bool = False) -> Case:
     for name, load_case in case.load_cases.items():
         way = load_case.direction if load_case.direction != "both" else _known_way(case, load_case, moving)
         if load_case.speed * WAYS.get(way, 0.0) < 0.0:
-            rpm = load_case.speed * 30.0 / math.pi
             raise CaseError(
-                f"load_cases.{name}.direction: it is {way}, against the speed of {rpm:.4g} "
-                'rpm that the load case or the motion states; leave it out, or state speed = "0 rpm" in the load case'
+                f"load_cases.{name}.direction: it is {way}, against the speed that the load case or the motion states; "
+                "leave it out, or state a speed of 0 in the load case"
             )
         ways = {name: way} if way else {f"{name} {way}": way for way in WAYS}
         found |= {title: load_case.model_copy(update={"direction": way}) for title, way in ways.items()}

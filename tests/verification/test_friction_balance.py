@@ -188,7 +188,7 @@ def test_without_friction_and_with_none_all_is_the_same() -> None:
 def test_a_direction_against_the_speed_is_refused(speed: str, way: str) -> None:
     """Friction would help the drive then, whose power goes with its speed."""
     against = [*PINS, f'load_cases.turning.speed="{speed}"', f'load_cases.turning.direction="{way}"']
-    with pytest.raises(CaseError, match=rf"load_cases\.turning\.direction: it is {way}, against the speed of "):
+    with pytest.raises(CaseError, match=rf"load_cases\.turning\.direction: it is {way}, against the speed that"):
         solve_case_statics(edited(STARTER, against))
     other = {"backward": "forward", "forward": "backward"}[way]
     assert set(solve_case_statics(edited(STARTER, [*against[:-1], f'load_cases.turning.direction="{other}"'])).forces)
