@@ -57,7 +57,7 @@ class Scatter:
         Returns
         -------
         Scatter
-            None where it is zero in all.
+            Nothing scatters where it is zero in all.
         """
         risen = max(others, default=0.0) > 0.0
         return cls(high=math.inf, sources=sources, rises=True) if risen else cls()

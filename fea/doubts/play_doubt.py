@@ -174,7 +174,7 @@ def _play_on_link(case: Case, load_case: str, link: str, forces: JointForces, lo
         return Scatter(low=max(low, 0.0), high=high, sources=(source,))
 
     def as_column(value: float, found: Sequence[float]) -> Scatter:
-        """A link that nothing presses as stated is no column; what play presses is as little as it moves."""
+        """What play makes of a link that nothing presses as stated is left out."""
         return alone(value, found) if value > 0.0 else Scatter()
 
     rules = (with_couples, with_couples, as_column)

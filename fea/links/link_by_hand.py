@@ -95,8 +95,11 @@ def cut_link(
         One; of a pair whose plates bear differently, that of each plate (``alula.fea.common.plates``).
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
-    found = deformed or link_loads(load_case, link, case.body(link), moved.reactions or reactions, loads)
-    borne = on_plates(case, link, without_rounding(found, load_size(loads, longest), longest))
+    if deformed is None:
+        found = acting_on(case, load_case, link, moved.reactions or reactions, loads)
+    else:
+        found = without_rounding(deformed, load_size(loads, longest), longest)
+    borne = on_plates(case, link, found)
     if deformed is None and moved.state not in ("off", "unknown") and link != case.linkage.ground:
         return borne
     return tuple(second_order_loads(case, link, plate, stays=deformed is not None) for plate in borne)

@@ -140,11 +140,14 @@ def _fatigue(
     own, stresses, lives, scatter = [], [], [], fatigue_scatter(data)
     for curve in curves:
         cycle, at, factors = _critical(motion, data, curve)
-        for f, by in ((1.0, 1.0), (factors[0] * load.low, scatter.high), (factors[1] * load.high, scatter.low)):
-            stresses.append(cycle.stress(data, layers.across, f))
-            lives.append(cycle.repetitions(data, layers.across, f, by) or 0.0)
+        every = (1.0, 1.0), (factors[0] * load.low, scatter.high), (factors[1] * load.high, scatter.low)
+        ends = [
+            (cycle.stress(data, layers.across, f), cycle.repetitions(data, layers.across, f, by)) for f, by in every
+        ]
+        stresses += [stress for stress, _ in ends]
+        lives += [life for _, life in ends if life is not None]
         if curve.transfer in (None, motion.stated):
-            own.append((stresses[-3], cycle.repetitions(data, layers.across), cycle, at, curve))
+            own.append((*ends[0], cycle, at, curve))
     stress, life, cycle, at, curve = max(own, key=lambda one: one[0])
     sources = distinct(pin_sources(driven=curve.transfer is not None), (ESTIMATED,), load.sources)
     wanted = data.cycles if repetitions is None else repetitions

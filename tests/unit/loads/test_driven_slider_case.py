@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import tomllib
 
 import numpy as np
 import pytest
@@ -145,3 +146,27 @@ def test_the_report_of_its_check_tells_the_travel_and_the_force() -> None:
     assert re.search(r"whose travel is\s+130(\.0+)? mm", page)
     assert "Drive force on" in page
     assert "Drive torque" not in page
+
+
+TRAMMEL = """
+schema_version = 1
+title = "A rod on two sliders"
+massless = ["s1", "s2"]
+links.base = { ground = true, points.S1 = ["0 mm", "0 mm"], points.S2 = ["0 mm", "0 mm"] }
+links.s1.points = { Q = ["10 mm", "0 mm"], A = ["0 mm", "0 mm"] }
+links.s2.points = { Q = ["10 mm", "0 mm"], B = ["0 mm", "0 mm"] }
+links.rod.points = { A = ["0 mm", "0 mm"], B = ["100 mm", "0 mm"], P = ["50 mm", "0 mm"] }
+joints.g1 = { links = ["base", "s1"], type = "slider", points = ["S1", "A"] }
+joints.g2 = { links = ["base", "s2"], type = "slider", points = ["S2", "B"], direction = "90 deg" }
+joints.A = { links = ["rod", "s1"] }
+joints.B = { links = ["rod", "s2"] }
+pose = { coordinate = "rod", angle = "140 deg", near = { s1 = "0 deg", s2 = "0 deg" } }
+drive = { link = "s1", joint = "g1" }
+load_cases.lift.forces = [{ link = "rod", at = "P", force = ["0 N", "-20 N"] }]
+"""
+
+
+def test_ways_to_hold_need_a_revolute_joint_on_the_ground() -> None:
+    validate(tomllib.loads(TRAMMEL))
+    with pytest.raises(CaseError, match="ways_to_hold: no revolute joint on the ground"):
+        validate(tomllib.loads(TRAMMEL + '[ways_to_hold]\nlink = "rod"\nat = "P"\n'))
