@@ -2,16 +2,19 @@
 
 import math
 import tomllib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from edited_cases import edited
 
 from alula.fea.check.run import check_case
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter, differing
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Verdict
+from alula.fea.doubts.other_case import Doubt
 from alula.fea.superposition.link_answers import widest
 from alula.fea.vibration.harmonics import nearest_harmonic
 from alula.loads.case.case_file import validate
@@ -94,6 +97,18 @@ def test_zero_times_what_has_no_end_is_not_known():
     assert rule(0.0, [0.0, 1e-3]).high == math.inf
     assert differing([(0.0, endless), (1.0, Scatter())]) == math.inf
     np.testing.assert_array_equal(differing([(np.zeros(2), endless), (np.ones(2), Scatter())]), [math.inf] * 2)
+
+
+def test_rounding_in_a_joint_that_bears_nothing_is_no_force_of_another_answer():
+    """Of two joints; what the other bears differs as it does."""
+
+    def answer(one, other):
+        joints = {"A": SimpleNamespace(magnitude=one), "B": SimpleNamespace(magnitude=other)}
+        return SimpleNamespace(reactions=SimpleNamespace(joints=joints), plates={})
+
+    cause = Alternatives(source=Source(kind=SourceKind.FRICTION), others=(answer(1e-17, 3.0),))
+    joints = Doubt(stated=answer(0.0, 2.0), cause=cause).growths.joints
+    assert {name: one.high for name, one in joints.items()} == {"B": 1.5}
 
 
 def test_the_nearest_harmonic_is_of_the_load_case_in_which_it_comes_nearest():

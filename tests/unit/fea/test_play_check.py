@@ -219,6 +219,8 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
         tied = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
         assert (tied.stress["arm"].low, tied.stress["arm"].high) == pytest.approx((0.1, 3.0))
         assert tied.columns["arm"] == found.columns["arm"]
+    told["plain"] = (10.0, 1.0, 0.0)  # nothing presses it as stated: play's part of its buckling is left out
+    assert "arm" not in doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ()).columns
 
 
 def test_the_worst_offsets_lie_along_all_slopes_each_joint_at_the_rim_of_its_play() -> None:

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from legible import written
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from told_motion import pictures
@@ -23,6 +24,7 @@ from alula.loads.case.case_file import read_case
 from alula.loads.states.case_motion import solve_case_motion
 from alula.reports.figures.diagrams import internal_force_diagram
 from alula.reports.figures.motion.envelope_figures import envelope_figure
+from alula.reports.figures.set_up import profile_drawing
 from alula.reports.figures.sheet.canvas import Canvas
 from alula.reports.figures.sheet.chart import Chart
 from alula.reports.figures.sheet.plot import Axes
@@ -190,3 +192,8 @@ def test_a_chart_of_bands_tells_their_ends():
     [band] = Chart(figure).plotted
     assert (band.name, band.unit) == ("C_N 1 to 2", "W")
     assert (band.y.min(), band.y.max()) == (1.0, 5.0)
+
+
+def test_a_profile_with_one_tilt_below_zero_is_drawn_up_to_zero():
+    rows = [SimpleNamespace(time=0.6 * k, force=100.0 * k, tilt=np.radians(-10.0)) for k in range(3)]
+    assert {"tilt [deg]", "−10", "0"} <= set(written(profile_drawing(SimpleNamespace(rows=rows))))
