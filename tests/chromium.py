@@ -9,7 +9,7 @@ import shutil
 import time
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +79,16 @@ class Browser:
     def element(self, selector: str) -> Any:
         """Return the first element of a CSS selector."""
         return self.driver.find_element("css selector", selector)
+
+    def keys(self, selector: str, keys: str) -> None:
+        """Press keys in the first element of a CSS selector; find it once more where the page has drawn it anew."""
+        from selenium.common.exceptions import StaleElementReferenceException
+
+        for _ in range(5):
+            with suppress(StaleElementReferenceException):
+                self.element(selector).send_keys(keys)
+                return
+        raise AssertionError(f"{selector} is drawn anew again and again")
 
     def elements(self, selector: str) -> list[Any]:
         """Return all elements of a CSS selector."""

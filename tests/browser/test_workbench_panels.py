@@ -98,8 +98,7 @@ def show(browser: chromium.Browser, table: str) -> None:
 
 def write(browser: chromium.Browser, selector: str, text: str) -> None:
     """Type into a field as a person does, and leave it by the keyboard."""
-    field = browser.element(selector)
-    field.send_keys("\ue009a\ue000" + text + "\ue004")
+    browser.keys(selector, "\ue009a\ue000" + text + "\ue004")
 
 
 def test_a_width_changes_the_text_and_the_verdict(browser: chromium.Browser, bench: tuple[str, Path]) -> None:
@@ -155,7 +154,7 @@ def test_a_pure_number_stays_one_and_what_is_typed_is_saved(browser: chromium.Br
         write(browser, MINIMUM, typed)
         browser.wait(f"/^minimum = {stands}(?![.0-9])/m.test({TEXT})")
         browser.wait(f"document.querySelector({MINIMUM!r}).value === {stands.strip(chr(34))!r}")
-    browser.element(MINIMUM).send_keys("\ue009a\ue000" + "2.75" + "\ue009s\ue000")
+    browser.keys(MINIMUM, "\ue009a\ue000" + "2.75" + "\ue009s\ue000")
     browser.wait(f"/^minimum = 2.75/m.test({TEXT})")
     browser.wait("document.title.startsWith('mine')")
     assert tomllib.loads(case.read_text(encoding="utf-8"))["checks"]["strength"]["minimum"] == 2.75
