@@ -234,6 +234,22 @@ def test_no_sample_surely_passes_what_the_nominal_check_left_open(monkeypatch):
     assert (result.certain.count, result.possible.count) == (0, 200)
 
 
+def test_a_pair_is_as_far_apart_as_its_layers_hold_it():
+    """Samples are in one plane, which does not tell it; a pair that states the same has the same numbers."""
+    links = {
+        "base": LEVER["links"]["base"] | {"layer": 2, "thickness": "4 mm"},
+        "arm": LEVER["links"]["arm"] | {"layer": 0, "count": 2},
+    }
+    layers = {"layer_spacing": "6 mm", "tolerances": {"load_cases.pull.forces.0": "10 %"}}
+    found = [
+        tolerance_case(lever(links=links | {"arm": links["arm"] | stated}, **layers), samples=200, effort=ONE_MESH)
+        for stated in ({}, {"apart": "12 mm"})
+    ]
+    own, same = (one.numbers[0].low for one in found)
+    assert len(own) == 200
+    assert np.array_equal(own, same)
+
+
 def test_strength_and_modulus_change_the_numbers_in_proportion():
     case = lever(
         tolerances={"materials.m.yield_strength": "10 %", "materials.m.youngs_modulus": "20 %"},
