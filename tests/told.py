@@ -10,6 +10,7 @@ from alula.fea.common.band import Band
 from alula.fea.findings import of_check
 from alula.reports.check import screen
 from alula.reports.check.whole_check import check_json, check_page, check_record, check_sections
+from alula.reports.notebook.check_report import CheckReport
 from alula.reports.renderers.page import as_page
 from alula.reports.sections.markup import as_plain
 from alula.reports.sections.section import Folded, Text, parts_of
@@ -29,6 +30,14 @@ def found(result):
         with patch.object(of_check, "changes", lambda result: ()):
             _FOUND[id(result)] = result, of_check.with_findings(result)
     return _FOUND[id(result)][1]
+
+
+def report(result):
+    """``CheckReport`` of the same findings; by itself it would find all of them once more."""
+    told = CheckReport(result)
+    with patch.object(of_check, "with_findings", found):
+        assert told.sections
+    return told
 
 
 def sections(result, published=""):

@@ -13,13 +13,12 @@ from told import console_parts, ends_of, flat, numbers_of, values_of
 
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
-from alula.reports.notebook.check_report import CheckReport
 from alula.reports.sections.markup import as_html, as_plain, bold, code, link, sub
 from alula.reports.sections.section import Section, Series, Text, merged, parts_of, say
 from alula.reports.sections.table import Column, Number, Table, words
 
 LARGE = ("owl-wing-flight", "flapping-wing-chosen")
-"""Cases whose trials of what would change them take as long as all checks of the others."""
+"""Cases whose trials of what would change them take as long as all checks of the others: without these."""
 
 
 @pytest.mark.parametrize("name", ["owl-wing-static", "slider-crank", "finger"])
@@ -44,7 +43,7 @@ def hold_same_digits(result):
     console = flat(told.printed(result, width=400).replace("\u00a0", " "))
     record = json.loads(told.as_json(result))
     known = {f"{value:.9g}" for value in values_of(record)} | {"0"}
-    report = CheckReport(result)
+    report = told.report(result)
     checked = 0
     for section in sections:
         shown = [part for part in section.parts if section.title]
