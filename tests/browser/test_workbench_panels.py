@@ -273,6 +273,12 @@ def test_pictures_and_the_report_leave_the_page(
     address, _ = bench
     visit(browser, address)
     browser.wait("document.querySelector('.texts .link')")
+    open_panel(browser, "forms")
+    show(browser, "parts")
+    browser.wait(f"document.querySelector({WIDTH!r})")
+    write(browser, WIDTH, "9 mm")
+    browser.wait(f"""{TEXT}.includes('width = "9 mm"')""")
+    browser.wait("!document.querySelector('#panel-verdict.old')")
     browser.run(BLOBS)
     open_panel(browser, "out")
     browser.run(PRESS, "Picture, SVG")
