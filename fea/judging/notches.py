@@ -109,7 +109,8 @@ def notch_factor(case: Case, one: Asked, loads: str, hand: LinkByHand, refined: 
     governing = max(own, key=lambda number: uses[number].value)
     value, told = uses[governing].value, uses[governing].told
     high = max(use.high for use in uses.values())
-    edge = edge_stress(body, hand.check, high * material.ultimate_strength) / material.ultimate_strength
+    weakest = strength_scatter(material).low * material.ultimate_strength
+    edge = edge_stress(body, hand.check, high * weakest) / weakest
     sources = (
         *((CLAMP,) if edge > high else ()),
         *(pin_sources(driven=solid.cases[governing].transfer is not None) if body.pins else ()),

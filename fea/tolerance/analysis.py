@@ -21,7 +21,6 @@ from alula.fea.tolerance.states import Sampler
 from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.loads.case.case import Case
-from alula.loads.case.forks import apart
 from alula.loads.case.toleranced import Variable, toleranced
 from alula.loads.states.actions import needs_masses
 from alula.loads.states.masses import part_masses
@@ -93,7 +92,7 @@ def tolerance_case(
     clock("nominal check")
     masses = part_masses(case) if needs_masses(case) else {}
     reaches = {one.variable.tolerance: one.masses for one in ends} if masses else {}
-    plane = _in_one_plane(case) if case.layered else case
+    plane = case.in_one_plane() if case.layered else case
     presses = {x: presses_of(case, forces) for x, forces in statics.forces.items()}
     sampler = Sampler(
         case=plane, pose=plane.solve_pose(), masses=masses, variables=variables, reaches=reaches, presses=presses
@@ -129,13 +128,6 @@ def tolerance_case(
         notes=_notes(result, found, left_out),
         timings=clock.stages,
     )
-
-
-def _in_one_plane(case: Case) -> Case:
-    """The case with all links in one plane; plates of pairs stay as far apart as the layers hold them."""
-    plane = case.in_one_plane()
-    links = {name: link.model_copy(update={"apart": apart(case, name)}) for name, link in plane.links.items()}
-    return plane.model_copy(update={"links": links})
 
 
 def _asked(case: Case, samples: int) -> tuple[Variable, ...]:

@@ -62,7 +62,7 @@ def _with_room(points: TemperatureFactors) -> TemperatureFactors:
 
 
 def check_factors(entry: str, points: TemperatureFactors, what: str) -> None:
-    """Refuse a table that is not sorted, and one whose property grows above room temperature.
+    """Refuse a table that is not sorted, and one whose property is not 1 at room temperature or grows above it.
 
     Parameters
     ----------
@@ -82,6 +82,12 @@ def check_factors(entry: str, points: TemperatureFactors, what: str) -> None:
             "{entry} must rise in temperature; sort them and state each once",
             {"entry": entry},
         )
+    for temperature, factor in points:
+        if ROOM[0] <= temperature <= ROOM[1] and factor != 1.0:
+            raise refusal(
+                f"{entry} are {factor:g} at {temperature:g} degC, where the card's own {what} holds; state 1 there, and "
+                f"the others as shares of the {what} at room temperature"
+            )
     for (cooler, more), (warmer, less) in itertools.pairwise(((ROOM[1], 1.0), *points)):
         if warmer >= ROOM[1] and less > more:
             raise refusal(

@@ -25,7 +25,7 @@ from alula.loads.acting.cycle import Cycle
 from alula.loads.acting.springs import Spring, Tendon
 from alula.loads.acting.stop import Stop
 from alula.loads.case.eyes import with_eye
-from alula.loads.case.heights import heights
+from alula.loads.case.heights import heights, plates_apart
 from alula.loads.records.aero import AirForces, air_forces
 from alula.loads.records.carried import Carried
 from alula.loads.records.check_spec import (
@@ -216,9 +216,11 @@ class CoreCase(Revisable):
         return heights(self.links, self.parts, self.layer_spacing, self.washer)
 
     def in_one_plane(self) -> Self:
-        """Return the case with all links in one plane, whatever their layers."""
-        apart = {"layer": None, "z": None}
-        links = {name: link.model_copy(update=apart) for name, link in self.links.items()}
+        """Return the case with all links in one plane, whatever their layers; plates of pairs stay as far apart."""
+        links = {
+            name: link.model_copy(update={"layer": None, "z": None, "apart": plates_apart(link, self.layer_spacing)})
+            for name, link in self.links.items()
+        }
         joints = {name: joint.model_copy(update={"tight_in": ()}) for name, joint in self.joints.items()}
         return self.model_copy(update={"links": links, "joints": joints, "layer_spacing": None, "washer": None})
 

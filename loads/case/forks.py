@@ -6,7 +6,7 @@ from alula.geometry.bodies.features import Ring
 from alula.geometry.parts.part import FilePart
 from alula.loads.case.core import CoreCase
 from alula.loads.case.eyes import joint_of_fork, other_link
-from alula.loads.case.heights import thickness
+from alula.loads.case.heights import plates_apart, thickness
 
 
 def forked_link(case: CoreCase, joint: str) -> str | None:
@@ -49,14 +49,13 @@ def apart(case: CoreCase, link: str) -> float | None:
         For a pair whose distance does not follow.
     """
     record = case.links[link]
-    if record.count == 1 or record.apart is not None:
-        return record.apart
-    if case.layer_spacing is None:
+    distance = plates_apart(record, case.layer_spacing)
+    if distance is None and record.count > 1:
         raise CaseError(
             f"links.{link}.apart: it is missing, while count = 2 makes the link a pair of plates; state the distance "
             'of their mid-planes, such as apart = "14 mm"'
         )
-    return 2.0 * case.layer_spacing
+    return distance
 
 
 def levels(case: CoreCase, link: str) -> tuple[float, ...]:

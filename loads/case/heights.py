@@ -56,6 +56,25 @@ def heights(links: Links, parts: Parts, spacing: float | None, washer: float | N
     return {name: levels[link.layer] if link.layer is not None else link.z or 0.0 for name, link in links.items()}
 
 
+def plates_apart(link: Link, spacing: float | None) -> float | None:
+    """Return the distance of the mid-planes of a pair's plates: stated, or such that its mate lies between them.
+
+    Parameters
+    ----------
+    link : Link
+    spacing : float or None
+        Of the case's layers [mm].
+
+    Returns
+    -------
+    float or None
+        [mm]; None for a link that is no pair, and where it does not follow.
+    """
+    if link.count == 1 or link.apart is not None or spacing is None:
+        return link.apart
+    return 2.0 * spacing
+
+
 def layer_of(links: Iterable[str]) -> str:
     """Return the line by which the first link of a case states its layer, as an example.
 

@@ -161,6 +161,13 @@ def test_the_range_of_the_tensile_strength_is_none_of_notches(monkeypatch):
     assert "stated ranges at notches" not in " ".join(map(told, found.factor.texts))
 
 
+@pytest.mark.parametrize(("use", "low"), [(0.4, 30.0 / 36.0), (1.5, 1.0 / (1.5 + 1.0 / 30.0))])
+def test_the_edge_of_a_clamp_counts_at_the_weakest_strength(monkeypatch, use, low):
+    case = edited("knee", own(TOUGH + ', strength_range = ["30 MPa", "60 MPa"]'))
+    monkeypatch.setattr(notches, "edge_stress", lambda body, beam, largest: 36.0)
+    assert Solved(monkeypatch, [same(use, use)], spans=(180,)).factor(case).factor.low == pytest.approx(low)
+
+
 @pytest.mark.parametrize(("use", "decides"), [(0.5, 30.0 / 40.0), (0.9, 0.9)])
 def test_the_lower_of_distance_and_volume_counts(monkeypatch, use, decides):
     found = Solved(monkeypatch, [same(use, use)], volume=500.0, spans=(180,)).factor(

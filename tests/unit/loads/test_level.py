@@ -34,6 +34,17 @@ def test_tests_are_load_cases_where_the_case_states_none():
     assert not own.tests_alone
 
 
+@pytest.mark.parametrize(("loads", "told"), [(False, True), (True, False)])
+def test_checks_that_no_test_asks_are_told(loads, told):
+    stated = pylon(checks={"stiff": {"type": "displacement", "at": "T", "maximum": "1 mm"}})
+    if loads:
+        stated["load_cases"] = {"push": {"forces": [{"link": "pylon", "at": "T", "force": ["5 N", "0 N"]}]}}
+    for test in ("proof", "cyclic"):
+        stated["level"]["test"] = test
+        every = [caveat(one) for one in level_caveats(validate(stated))]
+        assert any("checks that the case itself states" in one for one in every) is told
+
+
 def test_without_load_cases_and_level_the_entry_is_missing():
     with pytest.raises(CaseError, match=r"^load_cases: this entry is missing; add it$"):
         validate(deepcopy(PYLON))
