@@ -17,7 +17,7 @@ from alula.loads.text.explain import printable
 
 _LETTERS = string.digits + string.ascii_uppercase + string.ascii_lowercase
 _DIGITS = _LETTERS + "_-"
-_PRISMATIC, _INPUT, _GROUNDED = 1, 2, 4
+_PRISMATIC, _INPUT, _GROUNDED, _WELDED = 1, 2, 4, 8
 _LOCAL, _OUTWARD = 1, 2
 """Of a force: it turns with its link; its arrow leads from where it acts, and else to there."""
 _LENGTHS = {0: 25.4, 1: 10.0, 2: 1000.0}
@@ -56,7 +56,7 @@ def read_pmks(text: str, name: str) -> Sketch:
     ------
     CaseError
         For a text that is no such link, or one that was cut short, and for what cannot be taken over: an input that is
-        no pin on the ground, a block that slides on a moving link.
+        no pin on the ground, a block that slides on a moving link or is welded to its pin.
     """
     code = unquote(text.strip()).rpartition("?")[2]
     if len(code) < 2 or _LETTERS[(len(code) - 1) % len(_LETTERS)] != code[-1]:
@@ -146,6 +146,11 @@ def _rider(own: Sequence[str], joints: dict[str, _Joint], ids: dict[str, str], n
         raise CaseError(
             f"'{name}': joint {printable(guide)} slides on a moving link, which is not taken over; leave it out, and "
             "state it in the case as a joint of type pin-in-slot"
+        )
+    if any(joints[one].has(_WELDED) for one in own):
+        raise CaseError(
+            f"'{name}': pin {printable(pin)} is welded to its block, which is not taken over; take the weld off, and "
+            "let the link slide itself in the case by a joint of type slider"
         )
     return Rider(point=ids[pin], through=joints[guide].at, along=cmath.rect(1.0, joints[guide].angle))
 

@@ -114,6 +114,9 @@ def test_a_force_of_pmks_may_press_and_may_turn_with_its_link():
         (FOUR_BAR[:-9], "no whole link of PMKS"),
         ("x" * 62 + "0", "no link of PMKS"),
         (FOUR_BAR.replace(".MA,", ".KA,"), "the input has to be one pin on the ground"),
+        (whole(PUNCH, (".LP,P,", ".HP,P,")), "joint P slides on a moving link"),
+        (whole(PUNCH, (".GC,C,", ".OC,C,")), "pin C is welded to its block"),
+        (whole(PUNCH, (".LP,P,", ".TP,P,")), "pin C is welded to its block"),
         (PUNCH.replace("0r8,0,0bW", "0r8,0,0r8"), "no link of PMKS"),  # a force without direction
         (whole(PUNCH, ("YRAB,Crank,VG,o,0,9O,c5cae9,A,B", "YRAB,Crank,VG,o,0,9O,c5cae9," + "A" * 9000)), "no link of"),
         (
