@@ -22,7 +22,6 @@ from alula.fea.superposition.link_answers import LinkAnswers
 from alula.geometry.base.ties import first_largest
 from alula.loads.records.applied import Load, chosen
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.kinetostatics import Kinetostatics
 from alula.loads.statics.statics import Equilibrium
 
@@ -100,7 +99,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
     shares = {name: _sought(moved, name, counted) for name in moved.forces}
     few = set(_spread(counted, TRIED))
     for i in map(int, counted):
-        stands = pose_at(moved.motion, i)
+        stands = moved.motion.pose(i)
         for name in moved.forces:  # pose by pose: all load cases have one factorisation
             frame, solution = solved_frame(case, stands, _loads_at(moved, name, i), moved.held)
             found, pins = stood(case, frame, solution)
@@ -167,7 +166,7 @@ def forces_at(moved: CaseMotion, load_case: str, pose: int) -> JointForces:
     -------
     JointForces
     """
-    return joint_forces(moved.case, pose_at(moved.motion, pose), _loads_at(moved, load_case, pose))
+    return joint_forces(moved.case, moved.motion.pose(pose), _loads_at(moved, load_case, pose))
 
 
 def _loads_at(moved: CaseMotion, load_case: str, pose: int) -> list[Load]:

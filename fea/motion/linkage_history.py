@@ -33,7 +33,6 @@ from alula.loads.case.joint_rules import friction_ranges
 from alula.loads.records.applied import chosen
 from alula.loads.records.check_spec import LimitLoadCheck
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.loose_motion import loose_motion
 
 SPREAD = 5
@@ -110,7 +109,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     for load_case, acting in moved.loads.items():
         found = []
         for i in _worst(moved, load_case, evaluated):
-            pose = pose_at(motion, i)
+            pose = motion.pose(i)
             try:
                 loads = [chosen(load, i) for load in acting]
                 frame = build_frame(case, pose, loads, held=moved.held)
@@ -241,7 +240,7 @@ def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> l
     """
     counted, found = [int(i) for i in np.flatnonzero(evaluated)], list[int]()
     if moved.held is not None:
-        distances = [moved.held.dead_point_distance(pose_at(moved.motion, i)) for i in counted]
+        distances = [moved.held.dead_point_distance(moved.motion.pose(i)) for i in counted]
         torques = np.abs(moved.torque[load_case][counted])
         found = [counted[first_least(distances)], counted[first_largest(torques)]]
     if moved.motion.instants is not None:

@@ -43,7 +43,6 @@ from alula.geometry.base.ties import first_largest
 from alula.loads.case.connection_rules import turned_by_drive
 from alula.loads.records.applied import chosen
 from alula.loads.states.case_motion import CaseMotion
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.loose_motion import LooseMotion, loose_motion
 
 NEARLY = 0.98
@@ -379,7 +378,7 @@ def _poses(
 
 def _grown_at(moved: CaseMotion, load_case: str, i: int, histories: Mapping[str, Sequence[LinkLoads]]) -> _GrownPose:
     """Numbers of one pose; none that grow where it has no joint forces by its frame."""
-    case, pose, loads = moved.case, pose_at(moved.motion, i), [chosen(load, i) for load in moved.loads[load_case]]
+    case, pose, loads = moved.case, moved.motion.pose(i), [chosen(load, i) for load in moved.loads[load_case]]
     plates = {
         link: plates_by_hand(case, link, [history.chosen(i) for history in every]) for link, every in histories.items()
     }

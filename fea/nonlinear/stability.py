@@ -340,4 +340,5 @@ def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:
         q=pose.q + np.array([*turns, *slid]),
         coordinate=pose.coordinate,
         residual=pose.residual,
+        among=pose.among,
     )

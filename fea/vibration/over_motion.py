@@ -25,7 +25,6 @@ from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import Load, PartMass, chosen
 from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.case_motion import CaseMotion, solve_case_motion
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.masses import part_masses
 from alula.loads.states.standing import stand
 
@@ -184,7 +183,7 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
             if np.isfinite(moved.torque[name][i]):
                 loads = [chosen(load, i) for load in moved.loads[name]]
                 try:
-                    known[i] = _at(case, name, pose_at(motion, i), loads, masses, count)
+                    known[i] = _at(case, name, motion.pose(i), loads, masses, count)
                 except (CannotRunError, CaseError):
                     known[i] = None
         return known[i]

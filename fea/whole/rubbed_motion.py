@@ -14,7 +14,6 @@ from alula.loads.case.case import Case
 from alula.loads.case.joint_rules import rubbing_joints
 from alula.loads.records.applied import chosen
 from alula.loads.states.case_motion import CaseMotion, solve_case_motion
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.drive_work import DriveWork
 from alula.loads.statics.friction import Presses
 
@@ -64,7 +63,7 @@ def _presses(moved: CaseMotion, load_case: str, end: End) -> Presses:
     poses, found = known[spread], []
     for i in map(int, poses):
         loads = [chosen(load, i) for load in moved.loads[load_case]]
-        forces = joint_forces(case, pose_at(moved.motion, i), loads)
+        forces = joint_forces(case, moved.motion.pose(i), loads)
         if forces.frame is None:
             return {}
         found.append(presses_of(case, forces, end))

@@ -386,6 +386,7 @@ class Motion:
             q=self.q[index],
             coordinate=self.coordinate,
             residual=self.residual,
+            among=self.q,
         )
 
     def stopping_points(self, joint: str) -> tuple[float, ...]:

@@ -34,6 +34,8 @@ class Placement:
         Their rates and second rates [1/s, 1/s²]; None at rest.
     rows : array of int (...), optional
         Row of the cycle's table in which what acts at each pose is stated; None where that is the same at every pose.
+    among : array (n, unknowns), optional
+        ``q`` of the whole motion that the poses are of, over which turns of links count; None where these are all.
     """
 
     closure: LoopClosure
@@ -41,6 +43,7 @@ class Placement:
     qdot: Real | None = None
     qddot: Real | None = None
     rows: NDArray[np.int64] | None = None
+    among: Real | None = None
 
     @property
     def linkage(self) -> Linkage:
@@ -51,6 +54,11 @@ class Placement:
     def shape(self) -> tuple[int, ...]:
         """Shape of the poses: () for one, (n,) for n."""
         return self.q.shape[:-1]
+
+    @property
+    def whole(self) -> "Placement":
+        """The whole motion that the poses are of, at rest."""
+        return self if self.among is None else Placement(closure=self.closure, q=self.among)
 
     @property
     def at_rest(self) -> "Placement":
@@ -64,7 +72,8 @@ class Placement:
         offsets = {name: np.broadcast_to(x, self.shape).ravel() for name, x in self.closure.offsets.items()}
         closure = replace(self.closure, offsets=offsets) if offsets else self.closure
         rows = None if self.rows is None else self.rows.ravel()
-        return Placement(closure=closure, q=self.q.reshape(-1, self.q.shape[-1]), qdot=qdot, qddot=qddot, rows=rows)
+        q = self.q.reshape(-1, self.q.shape[-1])
+        return Placement(closure=closure, q=q, qdot=qdot, qddot=qddot, rows=rows, among=self.among)
 
     def chosen(self, poses: Any) -> "Placement":
         """Return the chosen poses alone.
@@ -81,7 +90,7 @@ class Placement:
         """
         names = ("qdot", "qddot", "rows")
         own = {name: None if (value := getattr(self, name)) is None else value[poses] for name in names}
-        return Placement(closure=self.closure.chosen(poses), q=self.q[poses], **own)
+        return Placement(closure=self.closure.chosen(poses), q=self.q[poses], among=self.whole.q, **own)
 
     def _of(self, values: Real | Complex | None, link: str) -> Any:
         """Values of a link from those of the moving links; none for the ground and at rest."""

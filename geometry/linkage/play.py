@@ -356,7 +356,7 @@ class LooseJoints:
         closed = np.abs(closure.residual(q)).max(axis=-1, initial=0.0) <= CLOSED * place.linkage.longest
         rows = None if place.rows is None else np.broadcast_to(place.rows, shape)
         same_branch = self._sign(self._matrix(closure, q)) == self._sign(self._plain)
-        return Placement(closure=closure, q=q, rows=rows), closed & same_branch
+        return Placement(closure=closure, q=q, rows=rows, among=place.whole.q), closed & same_branch
 
     @cached_property
     def _plain(self) -> Real:

@@ -35,6 +35,8 @@ class Pose:
         Largest closure residual as a share of the longest link.
     offsets : mapping of str to complex
         Joint -> how far play sets its two points apart [mm], as ``LoopClosure`` has it.
+    among : ndarray, optional
+        As ``Placement`` has it.
     """
 
     linkage: Linkage
@@ -42,6 +44,7 @@ class Pose:
     coordinate: Coordinate | None
     residual: float
     offsets: Mapping[str, complex] = field(default_factory=dict)
+    among: Real | None = field(default=None, repr=False, compare=False)
 
     @cached_property
     def closure(self) -> LoopClosure:
@@ -51,7 +54,7 @@ class Pose:
     @cached_property
     def placement(self) -> Placement:
         """Where the links stand, at rest."""
-        return Placement(closure=self.closure, q=self.q)
+        return Placement(closure=self.closure, q=self.q, among=self.among)
 
     @cached_property
     def angles(self) -> Mapping[str, float]:

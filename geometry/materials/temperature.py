@@ -85,8 +85,8 @@ def check_factors(entry: str, points: TemperatureFactors, what: str) -> None:
     for temperature, factor in points:
         if ROOM[0] <= temperature <= ROOM[1] and factor != 1.0:
             raise refusal(
-                f"{entry} are {factor:g} at {temperature:g} degC, where the card's own {what} holds; state 1 there, and "
-                f"the others as shares of the {what} at room temperature"
+                f"{entry} are {factor:g} at {temperature:g} degC, where the card's own {what} holds; state 1 there, "
+                f"and the others as shares of the {what} at room temperature"
             )
     for (cooler, more), (warmer, less) in itertools.pairwise(((ROOM[1], 1.0), *points)):
         if warmer >= ROOM[1] and less > more:

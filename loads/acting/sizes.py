@@ -156,7 +156,7 @@ class Angle:
     def of(self, place: Placement) -> Real:
         """Return its value, without jumps over the poses.
 
-        Of angles that differ by full turns, the stated pose counts as the one nearest to these poses.
+        Of angles that differ by full turns, the stated pose counts as the one nearest to the poses of the motion.
 
         Parameters
         ----------
@@ -168,8 +168,8 @@ class Angle:
         array (...)
             [rad]
         """
-        found = self._relative(place) - self._relative(self.stated)
-        every = np.ravel(found)
+        stated = self._relative(self.stated)
+        found, every = self._relative(place) - stated, np.ravel(self._relative(place.whole) - stated)
         if len(every):
             off = np.round(np.abs(np.remainder(every + np.pi, 2.0 * np.pi) - np.pi), _TIE)
             found = found - 2.0 * np.pi * np.round(every[int(np.argmin(off))] / (2.0 * np.pi))

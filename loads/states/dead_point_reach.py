@@ -18,22 +18,6 @@ _SHORT = 1e-6
 """By which the search ends before the coordinate's own dead point [rad], or over the longest link."""
 
 
-def pose_at(motion: Motion, number: int) -> Pose:
-    """Return a pose of a motion.
-
-    Parameters
-    ----------
-    motion : Motion
-    number : int
-        Of the pose.
-
-    Returns
-    -------
-    Pose
-    """
-    return Pose(linkage=motion.linkage, q=motion.q[number], coordinate=motion.coordinate, residual=0.0)
-
-
 def least_dead_point_distance(moved: CaseMotion) -> float:
     """Return the least distance of a motion from a dead point of its driven link, as ``Pose.dead_point_distance``.
 
@@ -49,7 +33,7 @@ def least_dead_point_distance(moved: CaseMotion) -> float:
     """
     if moved.dead_points:
         return 0.0
-    return min(moved.drive.dead_point_distance(pose_at(moved.motion, i)) for i in range(len(moved.motion.angles)))
+    return min(moved.drive.dead_point_distance(moved.motion.pose(i)) for i in range(len(moved.motion.angles)))
 
 
 def way_to_dead_point(moved: CaseMotion) -> float:
@@ -79,7 +63,7 @@ def _beyond(moved: CaseMotion, number: int, sense: float) -> float:
     most, short = _TURN, _SHORT
     if motion.coordinate.slides:
         most, short = _TRAVEL * len(linkage.moving) * linkage.longest, _SHORT * linkage.longest
-    end, pose = float(motion.angles[number]), pose_at(motion, number)
+    end, pose = float(motion.angles[number]), motion.pose(number)
     try:
         on = _on(motion, pose, end, sense * most)
     except DeadPointError as error:

@@ -13,7 +13,6 @@ from alula.fea.outcomes.pins import stress_at
 from alula.fea.standing.joint_forces import joint_forces
 from alula.loads.records.applied import chosen
 from alula.loads.states.case_motion import solve_case_motion
-from alula.loads.states.dead_point_reach import pose_at
 
 STACK = [f"links.{name}.layer={layer}" for name, layer in (("base", 0), ("crank", 1), ("coupler", 2), ("rocker", 1))]
 HOLES = {"O2": ("base", "crank"), "A": ("crank", "coupler"), "B": ("coupler", "rocker"), "O4": ("base", "rocker")}
@@ -35,7 +34,7 @@ def test_all_poses_balance_in_space_and_are_those_of_their_frames() -> None:
             acting = link_loads(name, link, case.body(link), forces, loads)
             scale = acting.size(case.linkage.longest)
             assert np.abs(acting.resultant()[:, 2:5]).max() < 1e-9 * max(scale.max(), 1.0) * case.linkage.longest
-        alone = joint_forces(case, pose_at(moved.motion, 3), [chosen(load, 3) for load in loads]).reactions
+        alone = joint_forces(case, moved.motion.pose(3), [chosen(load, 3) for load in loads]).reactions
         for joint, reaction in forces.joints.items():
             wanted = alone.joints[joint].wrench
             assert reaction.wrench[3] == pytest.approx(wanted, rel=1e-7, abs=1e-7 * np.abs(wanted).max())

@@ -34,7 +34,6 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import EyeCheck
 from alula.loads.states.case_motion import CaseMotion, solve_case_motion
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.loose_motion import LooseMotion, loose_motion
 from alula.reports.motion.play import drive_with_play, play_record
 
@@ -125,12 +124,12 @@ def test_distance_to_a_dead_point_at_all_poses() -> None:
     """Without play it is that of the constraints' Jacobian; play at D is as if its pin stood elsewhere."""
     of = moved("0 mm", D="0.2 mm")
     value, least = loose(of).distance
-    expected = [of.drive.dead_point_distance(pose_at(of.motion, i)) for i in range(73)]
+    expected = [of.drive.dead_point_distance(of.motion.pose(i)) for i in range(73)]
     assert value == pytest.approx(expected, rel=1e-9)
     tried = []
     for way in np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False)):
         other = moved("0 mm", ground=D + 0.1 * way)
-        tried.append([other.drive.dead_point_distance(pose_at(other.motion, i)) for i in range(73)])
+        tried.append([other.drive.dead_point_distance(other.motion.pose(i)) for i in range(73)])
     changes = np.min(tried, axis=0) - value
     assert np.all(least <= value + 0.99 * changes)
     assert np.all(least >= value + 1.03 * changes)

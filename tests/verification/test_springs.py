@@ -11,6 +11,7 @@ from sprung_cases import CROWN, FOUR_BAR, HANG, LEVER, case_of, stands
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.loose_motion import loose_motion
 
 TURN = {"joint": "O", "stiffness": "300 N*mm/rad"}
 
@@ -192,6 +193,21 @@ def test_a_wound_spring_goes_on_over_a_whole_turn():
     moved = solve_case_motion(case)
     torque = -900.0 + 300.0 * np.linspace(0.0, 2.0 * math.pi, 9)
     assert moved.torque["hang"] == pytest.approx(torque, abs=1e-9)
+
+
+def test_a_wound_spring_keeps_its_turns_at_single_poses_of_a_motion():
+    """With play, and in a frame, a pose of the motion is looked at by itself."""
+    case = case_of(
+        LEVER.replace('["base", "lever"]', '["base", "lever"], clearance = "0.1 mm"'),
+        springs={"back": {**TURN, "preload": "900 N*mm"}},
+        drive={"link": "lever", "joint": "O"}, pose={"coordinate": "lever", "angle": "0 deg"},
+        motion={"turn": True, "poses": 9},
+    )  # fmt: skip
+    moved = solve_case_motion(case)
+    wound = case.springs["back"].acting("back", case.stated_pose.placement).along
+    for i, angle in enumerate(np.linspace(0.0, 2.0 * math.pi, 9)):
+        assert wound.of(moved.motion.pose(i).placement) == pytest.approx(angle, abs=1e-9)
+        assert loose_motion(moved).play("hang", i).effort.value == pytest.approx(-900.0 + 300.0 * angle, abs=1e-9)
 
 
 STOP = {"low": {"joint": "O", "at_least": "-10 deg"}}

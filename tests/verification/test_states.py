@@ -20,7 +20,6 @@ from alula.loads.case.case import Case
 from alula.loads.case.case_file import validate
 from alula.loads.case.toleranced import Variable
 from alula.loads.records.applied import PointLoad, chosen
-from alula.loads.states.dead_point_reach import pose_at
 from alula.loads.states.kinetostatics import relative_motion, torque_by_virtual_work, work
 from alula.loads.states.play import play_at
 from alula.loads.statics.friction import Friction, solve_friction
@@ -104,7 +103,7 @@ def test_states_at_once_are_the_states_one_by_one_and_keep_virtual_work(linkage:
         size = np.abs(both.unknowns[case]).max()
         assert both.drive_torque[case] == pytest.approx(torque, abs=1e-9 * size)
         for i in range(poses):
-            one = solve_statics(pose_at(motion, i), DRIVE, of_one(loads, case, i))
+            one = solve_statics(motion.pose(i), DRIVE, of_one(loads, case, i))
             assert both.unknowns[case, i] == pytest.approx(one.unknowns, abs=1e-11 * size)
             for name, reaction in one.joints.items():
                 assert both.joints[name].wrench[case, i] == pytest.approx(reaction.wrench, abs=1e-11 * size)

@@ -98,9 +98,8 @@ def test_the_pose_of_the_lowest_frequency_is_sought_by_low_ends_and_where_these_
 
     monkeypatch.setattr(over_motion, "_at", at)
     monkeypatch.setattr(over_motion, "on_rims", lambda case, modes, masses: rimmed.append(modes.pose) or modes)
-    monkeypatch.setattr(over_motion, "pose_at", lambda motion, i: i)
     case = SimpleNamespace(motion=SimpleNamespace(speed=0.0), load_cases={"turning": SimpleNamespace(speed=10.0)})
-    motion = SimpleNamespace(angles=np.linspace(0.0, 80.0, 81))
+    motion = SimpleNamespace(angles=np.linspace(0.0, 80.0, 81), pose=lambda i: i)
     moved = SimpleNamespace(case=case, motion=motion, torque={"turning": np.zeros(81)}, loads={"turning": ()})
     own = over_motion._over(moved, "turning", {}, 1)
     assert own.lowest.pose == 61

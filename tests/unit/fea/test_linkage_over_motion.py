@@ -43,7 +43,6 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
     stubs = {
         "blind_link": lambda case: "",
         "_worst": lambda *_: order,
-        "pose_at": lambda motion, i: i,
         "build_frame": lambda case, pose, loads, held: SimpleNamespace(model=None, pose=pose, pin_beams={}),
         "linkage_factor": lambda frame: factors[frame.pose],
         "solve_frame": lambda model: None,
@@ -58,6 +57,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         motion=SimpleNamespace(
             coordinate=Coordinate("crank"),
             angles=np.radians([10.0, 20.0]),
+            pose=lambda i: i,
             progress=np.array([10.0, 20.0]),
             instants=None,
         ),
