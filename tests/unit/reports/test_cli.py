@@ -133,6 +133,11 @@ def test_new_lists_the_built_in_cases() -> None:
         (["synth", "-o", f"{__file__}/out"], ["output: ", "(Not a directory)", "choose another folder"]),
         (["study", "four-bar", "--vary", "parts.bar.width=8 mm", "-o", f"{__file__}/out"], ["(Not a directory)"]),
         (["new", "--list", "a.toml"], ["--list", "leave out all else"]),
+        (["new", "--list", "--unit", "cm"], ["--list", "leave out all else"]),
+        (["new", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
+        (["new", "--study", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
+        (["new", "--from", "four-bar", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
+        (["new", "--from-pmks", "none.txt", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
         (["new", "--from", "owl-wing-anchor", "owl-wing-anchor.step"], ["a file that the case names"]),
     ],
 )
