@@ -29,7 +29,7 @@ VariantsOption = Annotated[
     ),
 ]
 WorkersOption = Annotated[int | None, typer.Option(metavar="<number>", min=1, max=256, hidden=True)]
-"""What ``VariantsOption`` was called; it goes with the version after 0.1."""
+"""What ``VariantsOption`` was called; it warns, and goes with the version after 0.2."""
 VaryOption = Annotated[
     list[str] | None,
     typer.Option(
