@@ -134,6 +134,7 @@ def test_new_lists_the_built_in_cases() -> None:
         (["envelope", "four-bar", "--growth", "nan"], ["--growth (it is 'nan'): it must be a number without unit"]),
         (["synth", "-o", f"{__file__}/out"], ["output: ", "(Not a directory)", "choose another folder"]),
         (["study", "four-bar", "--vary", "parts.bar.width=8 mm", "-o", f"{__file__}/out"], ["(Not a directory)"]),
+        (["size", "four-bar", "--vary", "parts.bar.thickness=-3 mm..8 mm"], ["parts.bar.thickness (it is '-3 mm')"]),
         (["new", "--list", "a.toml"], ["--list", "leave out all else"]),
         (["new", "--list", "--unit", "cm"], ["--list", "leave out all else"]),
         (["new", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
