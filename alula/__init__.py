@@ -494,7 +494,7 @@ def size(
     step : str, optional
         Distance of two values of a range; a hundredth of it when left out.
     minimise, maximise : str, optional
-        What shall be least or greatest: mass, or a number such as ``"largest drive torque"``.
+        What shall be least or greatest: mass, or a number such as ``"drive torque"``.
     link, values, analysis, fidelity, threads, workers
         As for ``study``; ``analysis`` is check or envelope.
     accuracy, progress

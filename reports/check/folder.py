@@ -9,6 +9,7 @@ from pathlib import Path
 from alula.fea.claims.audit import ClaimResult
 from alula.fea.outcomes.result import CheckResult, SolidResult
 from alula.loads.case.case import Case
+from alula.loads.states.rubbing import each_direction
 from alula.reports.check.plastic_collapse import governing_collapses
 from alula.reports.check.published import CLAIMS, published_page
 from alula.reports.check.whole_check import check_json, check_page, check_pictures, check_sections
@@ -32,10 +33,16 @@ def report_names(case: Case) -> set[str]:
     Returns
     -------
     set[str]
+
+    Raises
+    ------
+    CaseError
+        As ``each_direction``.
     """
     links, pictures = case.checked_links, {"assembly", "clearance", "box"}
-    pictures |= {f"{kind}-{name}" for name in case.load_cases for kind in ("linkage", "shapes", "campbell", "air")}
-    pictures |= {f"{kind}-{name}" for name in links for kind in ("diagram", "layers", "stress")}
+    load_cases = {*each_direction(case).load_cases, *each_direction(case, moving=True).load_cases}
+    pictures |= {f"{kind}-{name}" for name in load_cases for kind in ("linkage", "shapes", "campbell", "air")}
+    pictures |= {f"{kind}-{name}" for name in links for kind in ("diagram", "layers", "stress", "plastic")}
     return {
         REPORT,
         CLAIMS,

@@ -115,8 +115,9 @@ def _held(result: CheckResult) -> Iterator[Part]:
 
 def _dead_points(result: CheckResult) -> Iterator[Part]:
     told: list[str | Number] = [
-        "Distance to a dead point: the smallest singular value of the scaled constraint Jacobian with that link held "
-        f"(0 at the dead point; below {plain(NEAR_DEAD_POINT)} there is a warning): "
+        "Distance to a dead point (a ratio): the smallest singular value of the scaled constraint Jacobian with the "
+        "pose coordinate held, or the driven link against the other link of its joint (sliders: the travel); 0 at the "
+        f"dead point, below {plain(NEAR_DEAD_POINT)} there is a warning: "
     ]
     for what, link, distance in dead_points(result):
         told += [f"{what} {link} ", Number(distance, "", 3), ", "]

@@ -417,6 +417,7 @@ def mcp(
     from alula.reports.words.limits import limited
     from alula.server import serve
 
+    options.refuse_closed(folder)
     with limited(threads):
         serve(folder, threads)
 

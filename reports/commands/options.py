@@ -1,5 +1,6 @@
 """Options that several commands have in common."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -29,7 +30,7 @@ VariantsOption = Annotated[
     ),
 ]
 WorkersOption = Annotated[int | None, typer.Option(metavar="<number>", min=1, max=256, hidden=True)]
-"""What ``VariantsOption`` was called; it goes with the version after 0.1."""
+"""What ``VariantsOption`` was called; it warns, and goes with the version after 0.2."""
 VaryOption = Annotated[
     list[str] | None,
     typer.Option(
@@ -75,6 +76,33 @@ def _folder(text: str | Path) -> Path:
     from alula.reports.page.output import folder_named
 
     return folder_named(text)
+
+
+def refuse_closed(folder: Path) -> None:
+    """Refuse a folder that the system does not let anyone look into; one that is missing is another's to refuse.
+
+    Parameters
+    ----------
+    folder : Path
+        That is read.
+
+    Raises
+    ------
+    CaseError
+        For a folder that may not be entered, or below one, and for a name that cannot be one.
+    """
+    from alula.geometry.base.errors import CaseError
+    from alula.loads.text.explain import printable
+
+    try:
+        os.stat(os.path.join(folder, "."))
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise CaseError(
+            f"'{printable(str(folder))}' cannot be looked into ({why}); check its permissions or name another folder"
+        ) from None
 
 
 def at_a_time(threads: int | None, workers: int | None) -> int | None:

@@ -1,6 +1,6 @@
 """The command ``alula size``: the least size that passes, the greatest that fails, and what limits them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import MappingProxyType
@@ -186,6 +186,7 @@ def find_size(
         variants = Variants(plan, Path(), points=points)
         for point in points:
             variants.tables(point)
+        _refuse_negative(case, axes, dict(values) | points[0])
         store = stack.enter_context(Store.writing(kept))
         engine = stack.enter_context(engine_for(variants, kept, workers=workers))
         search = Search(plan, Path(), store, engine, tell=tell)
@@ -200,6 +201,21 @@ def find_size(
         if folder is not None:
             search.finish()
     return found
+
+
+def _refuse_negative(case: "StatedCase", axes: "Sequence[Axis]", values: Mapping[str, object]) -> None:
+    """Refuse a range that goes below zero where its entry takes no such value: its steps would be left out untold."""
+    from alula.geometry.base.errors import CaseError
+
+    for axis in axes:
+        for end in (axis.values[0], axis.values[-1]) if axis.is_range else ():
+            if not str(end).strip().startswith("-"):
+                continue
+            try:
+                case.with_values({**values, axis.path: end})
+            except CaseError as error:
+                if str(error).startswith(f"{axis.path} (it is "):  # a rule of several entries may hold further on
+                    raise
 
 
 def _require_number(search: "Search", point: "Point", objective: "Objective") -> None:

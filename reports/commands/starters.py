@@ -70,7 +70,7 @@ def new(
     from alula.reports.words.numbers import joined
 
     if listed:
-        if path is not None or start is not None or study or pylinkage or pmks or step:
+        if path is not None or start is not None or study or pylinkage or pmks or step or unit:
             raise CaseError("--list: it lists the built-in cases and writes nothing; leave out all else")
         cases()
         return
@@ -83,6 +83,8 @@ def new(
     sources = {"--from": start, "--from-pylinkage": pylinkage, "--from-pmks": pmks, "--from-step": step}
     if sum(source is not None for source in (*sources.values(), study or None)) > 1:
         raise CaseError(f"{', '.join(sources)}, --study: they name different things; keep one of them")
+    if unit is not None and step is None and pylinkage is None:
+        raise CaseError("--unit: it is that of a mesh (--from-step) or of pylinkage (--from-pylinkage); leave it out")
     if step is not None:
         from alula.loads.exchange.part import part_case
         from alula.reports.tools.part import inspect_file

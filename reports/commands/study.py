@@ -210,6 +210,7 @@ def show(
     from alula.reports.study.rows import lines, results_section
     from alula.reports.study.sections import study_sections
 
+    options.refuse_closed(folder)
     with Store.reading(folder) as store:
         if csv_file is not None:
             _write_csv(csv_file, lines(store))

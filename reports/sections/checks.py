@@ -196,7 +196,7 @@ def checks_section(case: Case, checks: Sequence[CheckOutcome], verdict: Verdict,
     ordered, worst, several = by_nearness(checks), worst_of_each(checks), len(case.load_cases) > 1
     meaning = _MEANING[verdict].format(where=where)
     if verdict is Verdict.PASS:
-        meaning += " The last section lists what the model does not cover."
+        meaning += " “What the verdict does not cover” lists what the model leaves out."
     parts: list[Part] = [Text(meaning, "note")]
     whole = check_table(ordered, several=several, key="checks")
     if len(worst) == len(checks):

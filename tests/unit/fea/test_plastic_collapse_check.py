@@ -21,6 +21,7 @@ from alula.fea.plastic.load_path import NoPlasticStateError
 from alula.fea.refine.link_buckling import SolidBuckling
 from alula.geometry.base.errors import CaseError
 from alula.loads.records.check_spec import PlasticCollapseCheck
+from alula.reports.check.folder import report_names
 from alula.reports.check.plastic_collapse import collapse_section
 from alula.reports.sections.section import Picture
 from alula.reports.sentences import told
@@ -163,6 +164,7 @@ def test_from_the_case_to_the_section(monkeypatch):
     assert record["late-stance"]["links"] == {}
     pictures = {part.name: part.model for part in section.parts if isinstance(part, Picture)}
     assert pictures == {f"plastic-{link}": collapse_name(link) for link in ("front", "rear")}
+    assert {f"pictures/{name}.png" for name in pictures} <= report_names(result.case)
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,8 @@ from alula.geometry.base.errors import CannotRunError, CaseError
 from alula.loads.plans.plan import plan_of
 from alula.loads.plans.variants import Variants
 
+# Sockets to schedulers and workers that are gone are left to the garbage collector by distributed, which closes them
+# with a warning in whatever test runs then; what it calls that is deprecated depends on its version and Python's.
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
 
 

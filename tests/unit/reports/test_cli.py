@@ -1,11 +1,13 @@
 """The command as a user meets it: output, exit status, one sentence per mistake."""
 
+import errno
 import json
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import programs
 import pytest
@@ -132,7 +134,13 @@ def test_new_lists_the_built_in_cases() -> None:
         (["envelope", "four-bar", "--growth", "nan"], ["--growth (it is 'nan'): it must be a number without unit"]),
         (["synth", "-o", f"{__file__}/out"], ["output: ", "(Not a directory)", "choose another folder"]),
         (["study", "four-bar", "--vary", "parts.bar.width=8 mm", "-o", f"{__file__}/out"], ["(Not a directory)"]),
+        (["size", "four-bar", "--vary", "parts.bar.thickness=-3 mm..8 mm"], ["parts.bar.thickness (it is '-3 mm')"]),
         (["new", "--list", "a.toml"], ["--list", "leave out all else"]),
+        (["new", "--list", "--unit", "cm"], ["--list", "leave out all else"]),
+        (["new", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
+        (["new", "--study", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
+        (["new", "--from", "four-bar", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
+        (["new", "--from-pmks", "none.txt", "a.toml", "--unit", "cm"], ["--unit", "a mesh", "leave it out"]),
         (["new", "--from", "owl-wing-anchor", "owl-wing-anchor.step"], ["a file that the case names"]),
     ],
 )
@@ -151,6 +159,26 @@ def test_what_may_not_be_read_has_a_remedy(command: tuple[str, ...], monkeypatch
     done = programs.inside(*command, __file__ if command == ("inspect",) else str(Path(__file__).parent))
     assert done.returncode == 2
     assert f"is not readable; check its permissions; see alula {' '.join(command)} --help\n" in done.stderr
+
+
+@pytest.mark.parametrize("command", [("mcp",), ("study", "show")])
+@pytest.mark.parametrize(("name", "why"), [("closed/in", "Permission denied"), ("x" * 300, "File name too long")])
+def test_a_folder_that_may_not_be_looked_into(
+    command: tuple[str, ...], name: str, why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both ended as a fault of alula's own; root may enter all folders, so that a test makes up the refusal."""
+    ask = os.stat
+
+    def stat(path: Any, **more: Any) -> os.stat_result:
+        if "closed" in str(path):
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return ask(path, **more)
+
+    monkeypatch.setattr(os, "stat", stat)
+    done = programs.inside(*command, name, folder=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"alula: '{name[:40]}")
+    assert done.stderr.endswith(f"' cannot be looked into ({why}); check its permissions or name another folder\n")
 
 
 def test_help_names_what_an_option_takes_and_no_type_of_python() -> None:

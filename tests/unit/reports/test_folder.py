@@ -5,12 +5,17 @@ import re
 
 import numpy as np
 import pytest
+from edited_cases import edited
 from PIL import Image
 from solved import told
 
+from alula.fea.check.run import check_case
 from alula.fea.claims.sources import claims_of
+from alula.fea.findings.of_check import with_findings
 from alula.reports.check.folder import report_names, write_report
+from alula.reports.check.whole_check import check_page, check_sections
 from alula.reports.figures import figures
+from alula.reports.sections.section import Picture, parts_of
 
 
 @pytest.fixture
@@ -33,6 +38,16 @@ def test_the_folder_is_complete(result, tmp_path):
     assert json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["case"] == "owl-wing-static"
     _has_every_pixel(tmp_path / "out" / "pictures" / "stress-GF.png", tmp_path / "out" / "report.html")
     assert said == ["Drawing the linkage, the internal forces and the stress plots ..."]
+
+
+def test_names_are_known_of_both_directions_against_friction():
+    case = edited("four-bar", ["joints.A.friction=0.2", "motion.poses=3"])
+    result = with_findings(check_case(case, fidelity="beam"))
+    page = check_page(result, check_sections(result))
+    parts = [part for section in page.every for part in parts_of(section.parts)]
+    pictures = {part.name for part in parts if isinstance(part, Picture) and part.name}
+    assert {"linkage-lift forward", "linkage-lift backward"} <= pictures
+    assert {f"pictures/{name}.png" for name in pictures} <= report_names(case)
 
 
 def test_a_folder_is_written_without_a_solution(result, tmp_path, monkeypatch):

@@ -52,6 +52,8 @@ def test_it_stands_without_pictures(result):
         "Drive torque on AE about A: −130.6 N·mm (clockwise",
         "condition number",
         "driven link AE 0.0374",
+        "with the pose coordinate held, or the driven link against the other link of its joint (sliders: the travel);",
+        "“What the verdict does not cover” lists what the model leaves out.",
         "228.150°",
         "33.75 N·mm",
         "2.934 MPa",
