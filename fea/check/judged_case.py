@@ -19,7 +19,7 @@ from alula.fea.judging.solid_buckling import solid_buckling_outcomes
 from alula.fea.links.fidelity import DecidedLink
 from alula.fea.links.link_by_hand import slenderest
 from alula.fea.outcomes.found import Found
-from alula.fea.outcomes.pins import PinStress, pin_growth, shared_stress, twist_of, twisted
+from alula.fea.outcomes.pins import PinStress, pin_growth, shared_stress, twist_of, twisted, with_torque
 from alula.fea.outcomes.result import LinkResult, LoadCaseResult
 from alula.fea.outcomes.unloaded import undecided
 from alula.fea.standing.case_statics import with_ends
@@ -63,7 +63,10 @@ def judged(
     reactions = moved.reactions or statics.reactions[load_case]
     pins = _pins(case, reactions, hand.shared_forces)
     # ``pins`` and bearing hold the sharing of couples.
-    pinned = {x: pin_growth(case, x, reactions.joints, hand.uneven.of_pin) for x in pins}
+    pinned = {
+        x: with_torque(x, one, pin_growth(case, x, reactions.joints, hand.uneven.of_pin), hand.growth_through)
+        for x, one in pins.items()
+    }
     linkage = linkage_numbers(case, load_case, moved, forces, links, hand.free)
     columns = {x: slenderest(case, x, hand.columns(x)) for x in hand.plates}
     buckling = (

@@ -17,7 +17,7 @@ import numpy as np
 from alula.fea.asked.asked import Asked, asked
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason, together
-from alula.fea.common.scatter import fatigue_scatter, load_scatter
+from alula.fea.common.scatter import Scatter, fatigue_scatter, load_scatter, strength_scatter
 from alula.fea.common.source import distinct
 from alula.fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from alula.fea.judging.bearing import contact_pressure, in_own_eyes
@@ -28,6 +28,7 @@ from alula.fea.outcomes.fatigue import (
     STRESS_FACTOR,
     Lasting,
     LinkFatigue,
+    borne_scatter,
     fatigue_life,
     missing_data,
     notch_factors,
@@ -78,7 +79,9 @@ def unasked(link: str, name: str = "fatigue") -> list[Asked]:
     return [Asked(name=name, subject=Subject.link(link), quantity=what, limit=x) for what, x in limits.items()]
 
 
-def fatigue_outcomes(every: Sequence[Asked], load_case: str, found: Lasting, data: Fatigue) -> Iterator[CheckOutcome]:
+def fatigue_outcomes(
+    every: Sequence[Asked], load_case: str, found: Lasting, data: Fatigue, scatter: Scatter | None = None
+) -> Iterator[CheckOutcome]:
     """Yield the outcomes of fatigue: on stress, and on life where that is asked and the card has an exponent.
 
     Parameters
@@ -89,6 +92,8 @@ def fatigue_outcomes(every: Sequence[Asked], load_case: str, found: Lasting, dat
     found : Lasting
     data : Fatigue
         Of the material's card.
+    scatter : Scatter, optional
+        Of the strength; by default that of ``data``.
 
     Yields
     ------
@@ -103,7 +108,8 @@ def fatigue_outcomes(every: Sequence[Asked], load_case: str, found: Lasting, dat
             why = reason("card_ends_before", cycles=data.cycles, wanted=found.wanted)
             yield one.outcome(load_case, Band.unknown(BEYOND_CARD), why)
         else:
-            outcome = one.outcome(load_case, fatigue_scatter(data).on(found.stress.inverse(found.strength)))
+            bears = fatigue_scatter(data) if scatter is None else scatter
+            outcome = one.outcome(load_case, bears.on(found.stress.inverse(found.strength)))
             if one.check is not None and lives is not None:
                 lasts = reason("lasts", low=lives.low, high=lives.high, wanted=found.wanted, why=outcome.reason)
                 outcome = outcome.because(lasts)
@@ -113,7 +119,7 @@ def fatigue_outcomes(every: Sequence[Asked], load_case: str, found: Lasting, dat
 def link_fatigue_outcomes(
     case: Case, every: Sequence[Asked], load_case: str, found: LinkFatigue
 ) -> Iterator[CheckOutcome]:
-    """Yield the outcomes of a link's fatigue; none passes whose stress is beyond its static strength, hence not linear.
+    """Yield the outcomes of a link's fatigue; none passes whose stress may be beyond its static strength, not linear.
 
     Parameters
     ----------
@@ -129,9 +135,11 @@ def link_fatigue_outcomes(
     """
     material = case.material_of(every[0].subject.name)
     assert material.fatigue is not None
-    for outcome in fatigue_outcomes(every, load_case, found, material.fatigue):
-        if outcome.verdict is Verdict.PASS and found.largest > material.allowable:
-            outcome = outcome.left_open(reason("yields_in_cycle", stress=found.largest, strength=material.allowable))
+    weakest = strength_scatter(material).low * material.allowable
+    scatter = None if found.strength is None else borne_scatter(material, found.strength)
+    for outcome in fatigue_outcomes(every, load_case, found, material.fatigue, scatter):
+        if outcome.verdict is Verdict.PASS and found.largest > weakest:
+            outcome = outcome.left_open(reason("yields_in_cycle", stress=found.largest, strength=weakest))
         yield outcome
 
 

@@ -38,6 +38,7 @@ from alula.fea.outcomes.pins import (
     stresses,
     twist_of,
     twisted,
+    with_torque,
 )
 from alula.fea.whole.permanent_set import NOTHING, WITHOUT_YIELD, first_yield
 from alula.geometry.base.model import CaseModel
@@ -258,8 +259,9 @@ def _worst_pin(moved: CaseMotion, over: OverMotion, one: Asked, most: int | None
     def at(pose: int) -> CheckOutcome:
         reactions = solved.at(pose).joints
         shared = shared_stress(case, joint, reactions, forces_at(moved, load_case, pose))
+        stress = twisted(case, joint, shared, twists[pose])
         growth = pin_growth(case, joint, reactions, over.at(pose).pin_growth)
-        return pin_outcome(case, load_case, one, twisted(case, joint, shared, twists[pose]), growth)
+        return pin_outcome(case, load_case, one, stress, with_torque(joint, stress, growth, over.growth_through))
 
     pose = first_largest(np.array(bent))
     found = {i: at(i) for i in dict.fromkeys((pose, pose if most is None else most))}

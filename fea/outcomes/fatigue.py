@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.scatter import Scatter, fatigue_scatter
+from alula.fea.common.scatter import Scatter, fatigue_scatter, strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct
 from alula.fea.solid.stress import extreme_principal, von_mises
 from alula.geometry.base.ties import first_largest
@@ -431,6 +431,31 @@ def borne(material: Material, cycles: float) -> float | None:
     assert material.fatigue is not None
     found = strength_at(material.fatigue, cycles)
     return None if found is None else min(found, material.ultimate_strength or material.allowable)
+
+
+def borne_scatter(material: Material, strength: float) -> Scatter:
+    """Return what a strength under repeated load may be, over what it is.
+
+    Parameters
+    ----------
+    material : Material
+        With fatigue data.
+    strength : float
+        As ``borne`` gives it [MPa].
+
+    Returns
+    -------
+    Scatter
+        That of the fatigue strength. The tensile strength of a brittle material, at which it ends, scatters by itself.
+    """
+    assert material.fatigue is not None
+    own, static = fatigue_scatter(material.fatigue), strength_scatter(material)
+    if not material.brittle or static == Scatter():
+        return own
+    least, capped = static.low * material.allowable / strength, strength >= material.allowable
+    if least >= own.low and not capped:
+        return own
+    return own.either(replace(static, low=min(least, 1.0), high=static.high if capped else 1.0))
 
 
 def borne_repeated(

@@ -26,8 +26,9 @@ cheek, or plate, takes F/2.
 Between layers the couple of each eye is known (``alula.fea.beam.pin_between``), and which eye takes it is open only as
 far as where pins stand in their holes is (``alula.fea.pins``).
 
-Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
-may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
+Moments M about x and y that the joint carries besides (loads out of the plane) add to the largest, and to the shear
+what an eye bears of them linearly, 3 M/(2 t); from the least they may take off what the eyes' couple can make in the
+gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
 stress of a solid circle (3 + 2ν)/(2 + 2ν) V/A, in the middle, where nothing bends (Love, Mathematical Theory of
 Elasticity, 4th ed., section 230).
 
@@ -42,6 +43,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -120,11 +122,34 @@ def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
     Band
         [N mm]; of a bonded joint from 0, since nothing states what its faces take.
     """
-    if case.linkage.joints[joint].fixed:
-        return Band(value=abs(moment), low=0.0, high=abs(moment), sources=TWIST)
-    if not turned_by_drive(case, joint):
-        return Band.exact(0.0)
-    return Band.exact(abs(torque) if case.torque_transfer == "bore-shear" else 0.0)
+    most = float(torque_through(case, joint, moment, torque))
+    return Band(value=most, low=0.0, high=most, sources=TWIST) if _fixed(case, joint) else Band.exact(most)
+
+
+def torque_through(case: Case, joint: str, moment: Any, torque: Any) -> Any:
+    """Return the largest torque that may go through a joint's pin.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    moment : float or ndarray, shape (n,)
+        Of the joint about its pin [N mm].
+    torque : float or ndarray, shape (n,)
+        Of the drive [N mm].
+
+    Returns
+    -------
+    float or ndarray, shape (n,)
+        [N mm]
+    """
+    if _fixed(case, joint):
+        return abs(moment)
+    return abs(torque) * (turned_by_drive(case, joint) and case.torque_transfer == "bore-shear")
+
+
+def _fixed(case: Case, joint: str) -> bool:
+    return case.linkage.joints[joint].fixed
 
 
 def shaft_caveats(case: Case) -> Iterator[Caveat]:
@@ -239,9 +264,9 @@ def pin_stress(
     lever = sum(eye.middle - eye.low for eye in eyes) + gap
     most, shear_force = 0.0, force
     for taking, other in (eyes, eyes[::-1]):
-        arm, shear = _taken(taking, lever)
+        arm, shear, by_couple = _taken(taking, lever)
         most = max(most, force * (other.middle - other.low + gap + arm) + moment)
-        shear_force = max(shear_force, force * shear)
+        shear_force = max(shear_force, force * shear + moment * by_couple)
     least = max(force * gap / 2.0, moment - force * (max(eye.height for eye in eyes) + gap) / 2.0)
     borne = Band(value=most, low=least, high=most, sources=SOURCES)
     return _stressed(lever, borne, (force, shear_force), diameter, poisson)
@@ -296,15 +321,17 @@ def _stressed(lever: float, moment: Band, shears: tuple[float, float], diameter:
 
 
 @cache
-def _taken(eye: Ring, lever: float) -> tuple[float, float]:
+def _taken(eye: Ring, lever: float) -> tuple[float, float, float]:
     """Return the moment that a pin gains at the most in an eye that takes the couple of a unit force, and its shear.
 
     The force enters at the eye's lower rim with the moment of its lever [mm] less the eye's middle, which is left out.
+    The third is the shear by a unit couple alone [1/mm], which the eye bears linearly.
     """
     slope = lever / eye.second
     pressure = Polynomial([1.0 / eye.thickness + slope * eye.middle, -slope])
+    couple = Polynomial([-eye.middle, 1.0]) / eye.second
     shear, moment, before = 1.0, 0.0, eye.low
-    shears, moments = [shear], [moment]
+    shears, moments, by_couple, coupled = [shear], [moment], 0.0, [0.0]
     for low, high in eye.walls:
         moment += shear * (low - before)
         left = shear - pressure.integ(lbnd=low)
@@ -313,8 +340,10 @@ def _taken(eye: Ring, lever: float) -> tuple[float, float]:
         places = [z for z in places if low <= z <= high]
         shears += [float(abs(left(z))) for z in places]
         moments += [float(gained(z)) for z in places]
-        shear, moment, before = float(left(high)), float(gained(high)), high
-    return max(moments), max(shears)
+        beyond = by_couple - couple.integ(lbnd=low)
+        coupled += [float(abs(beyond(z))) for z in (low, min(max(eye.middle, low), high), high)]
+        shear, moment, before, by_couple = float(left(high)), float(gained(high)), high, float(beyond(high))
+    return max(moments), max(shears), max(coupled)
 
 
 def stress_at(case: Case, joint: str, reactions: Mapping[str, JointReaction]) -> PinStress:
@@ -619,6 +648,34 @@ def pin_growth(
         return growth(joint)
     sizes = (one.equivalent.value for one in parts)
     return of_sum(zip(sizes, map(growth, names), strict=True), whole.equivalent.value)
+
+
+def with_torque(
+    joint: str, stress: PinStress, growth: Scatter, through: Callable[[str, Callable[[Case, Any, Any], Any]], Scatter]
+) -> Scatter:
+    """Return by which the stress of a joint's pin grows where a torque may go through it.
+
+    Parameters
+    ----------
+    joint : str
+    stress : PinStress
+    growth : Scatter
+        With what its eyes bear.
+    through : callable
+        Of a joint and of what goes through it, by case, wrench and torque of the drive, to how that grows.
+
+    Returns
+    -------
+    Scatter
+        Stress is no more than in proportion to the larger of both.
+    """
+    if not stress.torsion.high > 0.0:
+        return growth
+
+    def torque(case: Case, wrench: Any, driving: Any) -> Any:
+        return torque_through(case, joint, wrench[..., 5], driving)
+
+    return growth.either(through(joint, torque))
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:

@@ -20,11 +20,11 @@ from alula.fea.judging.fatigue import asked_fatigue, judge_fatigue, link_fatigue
 from alula.fea.links.link_by_hand import cut_link
 from alula.fea.motion.envelope import envelope_case
 from alula.fea.motion.link_envelope import LinkMotion
-from alula.fea.outcomes.fatigue import LinkFatigue, borne_repeated, notch_factors, signed_stress
+from alula.fea.outcomes.fatigue import LinkFatigue, borne, borne_repeated, borne_scatter, notch_factors, signed_stress
 from alula.fea.outcomes.limits import stress_limits
 from alula.fea.refine.refinement import Effort
 from alula.geometry.base.errors import CaseError
-from alula.geometry.materials.material import Fatigue
+from alula.geometry.materials.material import Fatigue, library
 from alula.loads.case.case_file import validate
 from alula.loads.records.check_spec import FatigueCheck
 from alula.reports.check.displacement import displacement_section
@@ -128,6 +128,32 @@ def test_the_band_holds_load_and_strength():
     assert {SourceKind.LOAD, SourceKind.STRENGTH} <= {source.kind for source in outcome.value.sources}
     life = result.load_cases["pull"].of_links(LinkFatigue)["level"].repetitions
     assert life.low == pytest.approx(1e5 * outcome.value.low**6.0)
+
+
+@pytest.mark.parametrize(("least", "opens"), [(1.02, False), (0.98, True)])
+def test_a_cycle_that_may_yield_at_the_weakest_strength_never_passes(least, opens):
+    """The yield strength as stated is twice the stress; the weakest is a little above or below it."""
+    largest = check_case(repeated({}), fidelity="beam").load_cases["pull"].of_links(LinkFatigue)["level"].largest
+    case = repeated({"stress": "250 MPa"}, cycles=10.0)
+    name = "aluminium-6061-t6"
+    card = case.all_materials[name].model_copy(
+        update={"yield_strength": 2.0 * largest, "strength_range": (least * largest, 3.0 * largest)}
+    )
+    result = check_case(case.model_copy(update={"materials": {**case.materials, name: card}}), fidelity="beam")
+    outcome = found(result, "pull", "level")
+    assert outcome.verdict is (Verdict.UNDECIDED if opens else Verdict.PASS)
+    assert ("does not stay linear" in told(outcome.reason)) is opens
+
+
+@pytest.mark.parametrize(("stress", "low"), [(100.0, 0.7), (20.0, 0.9), (38.0, 0.7 * 40.0 / 38.0), (30.0, 0.9)])
+def test_the_tensile_strength_of_a_brittle_material_ends_and_scatters_what_it_bears(stress, low):
+    data = {**CARD, "stress": f"{stress} MPa", "strength_range": [f"{0.9 * stress} MPa", f"{1.1 * stress} MPa"]}
+    card = library()["resin-405nm"].model_copy(
+        update={"ultimate_strength": 40.0, "strength_range": (28.0, 50.0), "fatigue": Fatigue.model_validate(data)}
+    )
+    found = borne_scatter(card, borne(card, 1e6))
+    assert found.low == pytest.approx(low)
+    assert found.high == pytest.approx(1.25 if stress > 40.0 else 1.1)
 
 
 @pytest.mark.parametrize(("rule", "least"), [("goodman", None), ("peak-stress", math.inf)])

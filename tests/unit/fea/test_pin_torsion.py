@@ -102,3 +102,30 @@ def test_over_a_motion_the_worst_pose_counts_the_torque():
     assert int(np.argmax(np.abs(torque))) != int(np.argmax(np.linalg.norm(forces.forces["O2"], axis=1)))
     assert found["O2"].value.low <= case.pin_material("O2").allowable / max(least)
     assert found["O2"].value.low < 0.5 * found["A"].value.low
+
+
+def rubbing(friction: float, least: float) -> Case:
+    """The drive's pin itself does not rub, so that friction elsewhere makes more of its torque than of its force."""
+    rubs = [
+        entry
+        for joint in ("A", "B")
+        for entry in (f"joints.{joint}.friction={least}", f"joints.{joint}.friction_range=[{least}, {friction}]")
+    ]
+    moves = "motion.poses=25", 'motion.speed="10 rpm"', "motion.inertia=false"
+    return edited("four-bar", ['drive.transfer="bore-shear"', 'checks.pins={type="pins", minimum=2.0}', *rubs, *moves])
+
+
+def test_what_the_torque_may_be_is_in_the_band():
+    """As at the pose, so over the motion: with the largest friction the pin bears no less than the band says."""
+
+    def at_pose(case: Case) -> list[float]:
+        found = check_case(case, fidelity="beam").load_cases.values()
+        return [x.value for one in found for x in one.checks if x.name == "pins" and x.subject.name == "O2"]
+
+    def moving(case: Case) -> list[float]:
+        of = envelope_outcomes(solve_case_motion(case), {}, np.ones(25, dtype=bool))
+        return [x.value for x in of if x.name == "pins" and x.subject.name == "O2"]
+
+    for values in (at_pose, moving):
+        may, does = min(x.low for x in values(rubbing(0.8, 0.2))), min(x.value for x in values(rubbing(0.8, 0.8)))
+        assert 0.9 * does < may <= does

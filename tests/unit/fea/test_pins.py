@@ -184,6 +184,18 @@ def test_moments_out_of_the_plane_add():
     assert more.moment.low == pytest.approx(100.0 - 17.5)
 
 
+@pytest.mark.parametrize(("force", "over"), [(0.0, 1.000001), (200.0, 1.12)])
+def test_a_moment_out_of_the_plane_shears_the_pin(force, over):
+    """An eye bears it linearly: 3 M/(2 t) where no force acts; beside a force the sum of both is no less than all."""
+    eyes, moment = (Ring(diameter=6.0, low=-1.0, high=1.0), Ring(diameter=6.0, low=-1.5, high=1.5)), 1000.0
+    z = np.linspace(0.0, 2.0, 200_001)
+    couple = force * 2.5 + moment
+    shear = force * (1.0 - z / 2.0) - couple * 6.0 * z * (2.0 - z) / 8.0
+    most = np.abs(shear).max() * 3.6 / 2.6 * 4.0 / (np.pi * 36.0)
+    found = pin_stress(force, 6.0, eyes, moment=moment, poisson=0.3)
+    assert most * (1.0 - 1e-6) <= found.shear <= over * most
+
+
 def test_the_wings_pins_pass_and_thin_ones_fail():
     off = 'large_displacement="off"'  # the wing gives way under this load
 
