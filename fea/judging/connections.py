@@ -121,8 +121,8 @@ def _cards(case: Case, check: ConnectionCheck) -> dict[str, Material]:
     if isinstance(way, Flat | CrossPin | Screws):
         found["link"] = case.material_of(connected_link(case, check))
     if isinstance(way, CrossPin | Screws):
-        card = at_temperature(case.all_materials[way.material], case.conditions)
-        found["pin"] = card.drawn(f"{way.material} of {check.joint}", way.diameter)
+        card = case.all_materials[way.material].drawn(f"{way.material} of {check.joint}", way.diameter)
+        found["pin"] = at_temperature(card, case.conditions)
     if check.on_shaft:
         found["shaft"] = case.pin_material(check.joint)
     return found

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.common.verdict import CheckOutcome, Quantity
-from alula.fea.outcomes.pins import between_layers
+from alula.fea.outcomes.pins import between_layers, torque_through
 from alula.fea.outcomes.result import CheckResult
 from alula.fea.refine.refinement import Effort
 from alula.fea.tolerance.sizes import SizedCheck, SizeEnds, resized, sized_check
@@ -175,7 +175,7 @@ def covered(case: Case, outcome: CheckOutcome) -> bool:
     """Return True for an outcome whose number follows from statics and unit solutions.
 
     That of a pin of several joints between layers does not: it is in no proportion to the force of one joint, and
-    samples have no couples.
+    samples have no couples. Nor does that of a pin through which a torque may go.
 
     Parameters
     ----------
@@ -190,6 +190,7 @@ def covered(case: Case, outcome: CheckOutcome) -> bool:
         return outcome.subject.kind == "link" and case.part_of(outcome.subject.name).is_beam  # others buckle as solids
     if outcome.subject.kind == "pin" and isinstance(case.all_checks[outcome.name], PinCheck):
         joint = outcome.subject.name
-        return len(joints_of_pin(case, joint)) == 1 or not between_layers(case, joint)
+        alone = len(joints_of_pin(case, joint)) == 1 or not between_layers(case, joint)
+        return alone and not torque_through(case, joint, 1.0, 1.0)
     known = (Quantity.SAFETY_FACTOR, Quantity.SUSTAINED_STRESS, *PEAKS, Quantity.DISPLACEMENT)
     return outcome.quantity in known

@@ -83,6 +83,20 @@ class Fatigue(CaseModel):
             )
         return self
 
+    def times(self, factor: float) -> "Fatigue":
+        """Return the same with its strength, and the range of it, times a factor.
+
+        Parameters
+        ----------
+        factor : float
+
+        Returns
+        -------
+        Fatigue
+        """
+        ends = self.strength_range and tuple(factor * end for end in self.strength_range)
+        return self.model_copy(update={"stress": factor * self.stress, "strength_range": ends})
+
 
 class Material(CaseModel):
     """An isotropic linear elastic material: density, stiffness, strength and where they come from."""
@@ -242,7 +256,7 @@ class Material(CaseModel):
         return self
 
     def drawn(self, entry: str, diameter: float) -> "Material":
-        """Return the material with the strength that it has as round wire.
+        """Return the material with the strength that it has as round wire; thicker wire lasts less in proportion.
 
         Parameters
         ----------
@@ -277,6 +291,11 @@ class Material(CaseModel):
             changed["yield_strength"] = self.yield_strength * ratio
         if self.strength_range is not None:
             changed["strength_range"] = tuple(ratio * bound for bound in self.strength_range)
+        less = min(ratio, 1.0)  # thinner wire may bear more for long and often, too, but nothing says so
+        if self.sustained_stress is not None:
+            changed["sustained_stress"] = less * self.sustained_stress
+        if self.fatigue is not None:
+            changed["fatigue"] = self.fatigue.times(less)
         return self.model_copy(update=changed)
 
     @property

@@ -88,8 +88,9 @@ def check_factors(entry: str, points: TemperatureFactors, what: str) -> None:
                 f"{entry} are {factor:g} at {temperature:g} degC, where the card's own {what} holds; state 1 there, "
                 f"and the others as shares of the {what} at room temperature"
             )
-    for (cooler, more), (warmer, less) in itertools.pairwise(((ROOM[1], 1.0), *points)):
-        if warmer >= ROOM[1] and less > more:
+    warm = ((ROOM[1], 1.0), *(point for point in points if point[0] > ROOM[1]))
+    for (cooler, more), (warmer, less) in itertools.pairwise(warm):
+        if less > more:
             raise refusal(
                 f"{entry} grow from {more:g} at {cooler:g} degC to {less:g} at {warmer:g} degC, though a {what} falls "
                 f"as it gets warmer; they are shares of the {what} at room temperature, at most 1"

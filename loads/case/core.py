@@ -384,13 +384,13 @@ class CoreCase(Revisable):
         Returns
         -------
         Material
-            Its card, with the strength of a wire of that diameter where the card has one.
+            Its card, with the strength of a wire of that diameter where the card has one, warm.
         """
         record = self.joints[joint]
-        material = at_temperature(self.all_materials[record.pin_material], self.conditions)
-        if record.pin_diameter is None:
-            return material
-        return material.drawn(f"joints.{joint}.pin_diameter", record.pin_diameter)
+        material = self.all_materials[record.pin_material]
+        if record.pin_diameter is not None:
+            material = material.drawn(f"joints.{joint}.pin_diameter", record.pin_diameter)
+        return at_temperature(material, self.conditions)
 
     @property
     def pinned_joints(self) -> tuple[str, ...]:

@@ -118,8 +118,7 @@ def at_temperature(material: Material, conditions: Conditions) -> Material:
 
 def _times(value: float | tuple[float, float] | Fatigue, factor: float) -> float | tuple[float, float] | Fatigue:
     if isinstance(value, Fatigue):
-        ends = value.strength_range and tuple(factor * end for end in value.strength_range)
-        return value.model_copy(update={"stress": factor * value.stress, "strength_range": ends})
+        return value.times(factor)
     return (factor * value[0], factor * value[1]) if isinstance(value, tuple) else factor * value
 
 

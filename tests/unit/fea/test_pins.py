@@ -16,9 +16,10 @@ from alula.fea.common.verdict import Verdict
 from alula.fea.outcomes.pins import PinStress, crossing, pin_stress, shared_stress, stress_at
 from alula.geometry.base.errors import CaseError
 from alula.geometry.bodies.features import Ring
-from alula.geometry.materials.material import library
+from alula.geometry.materials.material import Fatigue, library
 from alula.loads.case.case_file import read_case
 from alula.loads.case.forks import eyes
+from alula.loads.records.conditions import Conditions
 from alula.loads.statics.joint_reaction import JointReaction
 
 WING = "owl-wing-static"
@@ -258,6 +259,24 @@ def test_a_thicker_pin_of_drawn_wire_is_weaker(diameter, least):
     material = edited(WING, [f'joints.A.pin_diameter="{diameter} mm"']).pin_material("A")
     assert material.ultimate_strength == pytest.approx(least * 6.894757e-3, rel=0.035)
     assert material.allowable == pytest.approx(1330.0 / 1779.0 * material.ultimate_strength)
+
+
+def test_a_warm_pin_of_drawn_wire_has_both_factors():
+    """Of a card of its own, whose fatigue and lasting strength are those of thin wire."""
+    lasts = Fatigue.model_validate({"stress": "600 MPa", "cycles": 1e6, "source": "made up"})
+    half = ((20.0, 1.0), (300.0, 0.5))
+    card = library()["steel-wire"].model_copy(
+        update={"temperature_factors": half, "sustained_stress": 1000.0, "fatigue": lasts}
+    )
+    case = edited(WING, ['joints.B.pin_diameter="3 mm"', 'joints.B.pin_material="steel-wire"'])
+    cold = case.model_copy(update={"materials": case.materials | {"steel-wire": card}})
+    warm = cold.model_copy(update={"conditions": Conditions(temperature="300 degC")})
+    found, before = warm.pin_material("B"), cold.pin_material("B")
+    assert found.allowable == pytest.approx(0.5 * before.allowable)
+    assert before.allowable < card.allowable
+    share = before.allowable / card.allowable
+    assert before.sustained_stress == pytest.approx(1000.0 * share)
+    assert before.fatigue.stress == pytest.approx(600.0 * share)
 
 
 def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():

@@ -353,6 +353,17 @@ def test_a_place_of_its_own_replaces_that_of_all_pins():
     assert set(np.unique(drawn).tolist()) == {-0.1, 0.1}
 
 
+@pytest.mark.parametrize(("transfer", "known"), [("eye-faces", True), ("bore-shear", False)])
+def test_pins_that_pass_a_torque_are_left_out(transfer, known):
+    """It turns with the pose, where the force of the joint stays the same."""
+    case = lever(
+        drive={"link": "arm", "joint": "O", "transfer": transfer},
+        checks={"pins": {"type": "pins", "minimum": 1.5}},
+    )
+    [outcome] = [x for x in check_case(case, fidelity="beam").load_cases["pull"].checks if x.subject.kind == "pin"]
+    assert covered(case, outcome) is known
+
+
 def test_the_buckling_of_plates_is_left_out():
     """It comes from their solids, not from columns."""
     plate = {"shape": "plate", "material": "m", "thickness": "4 mm", "eye_diameter": "12 mm"}

@@ -62,6 +62,7 @@ def test_a_brittle_card_uses_the_ultimate_strength() -> None:
         ({"temperature_factors": [["23 degC", 1.0], ["500 degC", 3.0]]}, "grow from 1 at 23 degC to 3 at 500 degC"),
         ({"temperature_factors": [["20 degC", 0.5], ["100 degC", 0.4]]}, "are 0.5 at 20 degC, where"),
         ({"modulus_temperature_factors": [["0 degC", 1.0], ["23 degC", 1.1]]}, "are 1.1 at 23 degC, where"),
+        ({"temperature_factors": [["-20 degC", 1.3], ["60 degC", 1.1]]}, "grow from 1 at 23 degC to 1.1 at 60 degC"),
         ({"temperature_factors": [["40 degC", 0.7], ["60 degC", 0.8]]}, "grow from 0.7 at 40 degC to 0.8 at 60 degC"),
         ({"sustained_stress": "60 MPa"}, "sustained_stress is 60 MPa, above yield_strength, 41.4 MPa"),
         ({"sustained_modulus": "2.5 GPa"}, "sustained_modulus is 2500 MPa, above youngs_modulus, 2400 MPa"),
