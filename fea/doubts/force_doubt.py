@@ -7,7 +7,8 @@ compression on pins that tilt bends out of the plane from the first newton, by t
 in the frame, whose pins keep its angles: the answers of sharing hold that growth (``alula.fea.links.second_order``).
 """
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from alula.fea.common.link_loads import LinkLoads, Plates
 from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import COUPLES, Source
-from alula.fea.doubts.load_growth import Growths, telling
+from alula.fea.doubts.load_growth import NOTHING, Growths, telling
 from alula.fea.links.link_by_hand import HandStates, acting_on, on_plates
 from alula.fea.links.second_order import on_tilting_pins
 from alula.fea.nonlinear.large_displacement import LargeDisplacement
@@ -27,6 +28,8 @@ from alula.loads.case.case import Case
 from alula.loads.records.applied import Load
 from alula.loads.statics.statics import Reactions
 
+ForceRule = Callable[[NDArray[np.float64], NDArray[np.float64]], Scatter]
+"""From a joint's force as stated, and in n other answers (n, ...), to the factors on its size."""
 FLAT = 1e-4
 """Extent of points in a direction, over their largest, below which they have none."""
 MOST_DIRECTIONS = 6
@@ -54,7 +57,7 @@ def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequ
         return Growths()
     answers = {link: stiffness_answers(case, load_case, link, forces, loads) for link in case.checked_links}
     changed = [one.reactions for one in forces.open_by]
-    return growths_by_hand(case, forces.on_tight_pins, changed, _summed(forces.sources), answers)
+    return growths_by_hand(case, forces.on_tight_pins, changed, _steps(forces.sources), answers)
 
 
 def stiffness_answers(case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load]) -> LinkAnswers:
@@ -107,7 +110,7 @@ def sharing_doubt(
         return Growths()
     links = case.checked_links if links is None else links
     answers = {link: sharing_answers(case, load_case, link, forces, loads, grown=grown) for link in links}
-    return growths_by_hand(case, forces.reactions, forces.sharings, widest(COUPLES), answers)
+    return growths_by_hand(case, forces.reactions, forces.sharings, _sizes(COUPLES), answers)
 
 
 def sharing_answers(
@@ -201,7 +204,7 @@ def _by_itself(case: Case, load_case: str, link: str, forces: JointForces, loads
 
 
 def growths_by_hand(
-    case: Case, stated: Reactions, changes: Sequence[Reactions], rule: Rule, answers: Mapping[str, LinkAnswers]
+    case: Case, stated: Reactions, changes: Sequence[Reactions], rule: ForceRule, answers: Mapping[str, LinkAnswers]
 ) -> Growths:
     """Return what a cause makes of links by hand, and of joint forces.
 
@@ -211,8 +214,7 @@ def growths_by_hand(
     stated : Reactions
     changes : sequence of Reactions
         In the other answers.
-    rule : callable
-        Of joint forces.
+    rule : ForceRule
     answers : mapping of str to LinkAnswers
         By link.
 
@@ -260,12 +262,40 @@ def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.arange(count)
 
 
-def _joints(stated: Reactions, changes: Sequence[Reactions], around: Rule) -> dict[str, Scatter]:
-    joints = {}
+def _joints(stated: Reactions, changes: Sequence[Reactions], rule: ForceRule) -> dict[str, Scatter]:
+    largest, found = max((joint.magnitude for joint in stated.joints.values()), default=0.0), dict[str, Scatter]()
     for name, joint in stated.joints.items():
-        along = joint.force / (joint.magnitude or 1.0)
-        joints[name] = around(joint.magnitude, [float(along @ one.joints[name].force) for one in changes])
-    return joints
+        others = np.array([one.joints[name].force for one in changes]).reshape(len(changes), -1)
+        others[np.linalg.norm(others, axis=1) < NOTHING * largest] = 0.0  # but for rounding
+        found[name] = rule(np.asarray(joint.force), others)
+    return found
+
+
+def _sizes(sources: tuple[Source, ...]) -> ForceRule:
+    """The rule of alternatives: the largest size of a force, and the least along the stated one."""
+
+    def rule(force: NDArray[np.float64], others: NDArray[np.float64]) -> Scatter:
+        size = float(np.linalg.norm(force))
+        along = others @ force / (size or 1.0)
+        return widest(sources)(size, [*along.tolist(), *np.linalg.norm(others, axis=1).tolist()])
+
+    return rule
+
+
+def _steps(sources: tuple[Source, ...]) -> ForceRule:
+    """The rule of what adds up: steps along the stated force by their sign, and those across it at their worst."""
+
+    def rule(force: NDArray[np.float64], others: NDArray[np.float64]) -> Scatter:
+        size = float(np.linalg.norm(force))
+        if not size > 0.0:
+            return Scatter.from_zero(np.linalg.norm(others, axis=1).tolist(), sources)
+        steps, along = (others - force) / size, force / size
+        parts = steps @ along
+        across = float(np.linalg.norm(steps - parts[:, None] * along, axis=1).sum())
+        low, high = 1.0 + float(np.minimum(parts, 0.0).sum()), 1.0 + float(np.maximum(parts, 0.0).sum())
+        return Scatter(low=max(low, 0.0), high=math.hypot(max(-low, high), across), sources=sources)
+
+    return rule
 
 
 def _on_tilting_pins(case: Case, link: str, states: Sequence[LinkLoads]) -> list[Plates]:

@@ -143,6 +143,8 @@ def in_any_direction(case: Case, link: str, factor: Band, principal: Band, von_m
         return factor
     material = case.material_of(link)
     least = layer_scatter(material).low * in_weakest_direction(material, principal.high, von_mises.high)
+    if principal.unknowable or von_mises.unknowable:
+        least = 0.0
     if not least < factor.low or factor.low == math.inf:
         return factor
     width = factor.low / least if least > 0.0 else math.inf

@@ -11,7 +11,7 @@ from alula.fea.common.reason import Reason, reason
 from alula.fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.layers import in_any_direction
-from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
+from alula.fea.judging.solid_buckling import bending_growth
 from alula.fea.links.fidelity import DecidedLink, Decision, HandBands
 from alula.fea.links.link_by_hand import LinkByHand
 from alula.fea.links.solid_result import solid_result
@@ -72,7 +72,7 @@ def link_result(
         bands = decided.hands.get(name) if name in decided.left or decided.solid is None else None
         decision = decided.left.get(name, decided.decision)
         result = _hand_result(link, material, hand, bands, decision)
-    grown = solid_growth(solid_buckling(result))
+    grown = bending_growth(case, load_case, link, result)
 
     def widened(quantity: PeakQuantity) -> Scatter:
         return spread(case, link, load_case, quantity, uneven, shares, grown)

@@ -11,7 +11,7 @@ from alula.fea.common.scatter import strength_scatter
 from alula.fea.common.source import Source, SourceKind, distinct, pin_sources
 from alula.fea.judging.link_result import spread
 from alula.fea.judging.loading import Judged, SolvedLinks
-from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
+from alula.fea.judging.solid_buckling import bending_growth
 from alula.fea.links.clamp_edge import CLAMP, edge_stress
 from alula.fea.links.link_by_hand import LinkByHand
 from alula.fea.modes.notches import NotchFactor
@@ -68,7 +68,7 @@ def judge_notches(here: SolvedLinks, one: Asked) -> Judged:
     if lost is not None:
         return Judged(outcome=one.outcome(load_case, Band.unknown(lost), lost))
     worst = min((found for found in every if isinstance(found, NotchFactor)), key=lambda found: found.factor.low)
-    grown = solid_growth(solid_buckling(here.links[link]))
+    grown = bending_growth(case, load_case, link, here.links[link])
     loads = spread(case, link, load_case, "principal", *here.doubts(link), grown)
     worst = replace(worst, factor=loads.inverse.on(worst.factor))
     outcome = one.outcome(load_case, worst.factor)

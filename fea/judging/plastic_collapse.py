@@ -21,7 +21,7 @@ from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.judge import of_link
 from alula.fea.judging.link_result import spread
 from alula.fea.judging.loading import Collapse, Judged, SolvedLinks
-from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
+from alula.fea.judging.solid_buckling import bending_growth
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.plastic.link_collapse import LinkCollapse, collapse_of
 from alula.fea.plastic.load_path import NoPlasticStateError
@@ -274,7 +274,7 @@ def judge_collapse(here: SolvedLinks, one: Asked) -> Judged:
     known = here.collapses[link]
     if not isinstance(known, LinkCollapse):
         return Judged(outcome=one.outcome(load_case, Band.unknown(known), known))
-    grown = solid_growth(solid_buckling(here.links[link]))
+    grown = bending_growth(case, load_case, link, here.links[link])
     outcome = one.outcome(load_case, collapse_band(case, link, load_case, known, *here.doubts(link), grown))
     why = reason("collapse_judged", found=collapse_said(case, link, known), judgement=outcome.reason)
     return Judged(outcome=outcome.because(why), numbers=(known,))

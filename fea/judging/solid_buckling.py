@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from alula.fea.buckling.buckling import asked_of, factor_band, judgement
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
-from alula.fea.common.scatter import Scatter
+from alula.fea.common.scatter import Scatter, load_over_modulus
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import CheckOutcome, Subject
 from alula.fea.outcomes.result import LinkResult, SolidResult
@@ -90,20 +90,40 @@ def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> Che
     return outcome.because(reason("buckling_judged", found=said, judgement=judgement(outcome, None)))
 
 
-def solid_growth(found: SolidBuckling | None) -> Scatter:
+def bending_growth(case: Case, load_case: str, link: str, result: LinkResult) -> Scatter:
+    """Return ``solid_growth`` of a link under the largest load over modulus that may be.
+
+    Parameters
+    ----------
+    case : Case
+    load_case, link : str
+        Their names.
+    result : LinkResult
+        Of the link.
+
+    Returns
+    -------
+    Scatter
+    """
+    return solid_growth(solid_buckling(result), load_over_modulus(case, load_case, [link])[1])
+
+
+def solid_growth(found: SolidBuckling | None, most: float = 1.0) -> Scatter:
     """Return by how much bending that goes with the load may exceed that of the solid, which is linear.
 
     Parameters
     ----------
     found : SolidBuckling or None
         Its buckling factors n; the growth is 1/(1 - 1/n) at most (``alula.fea.buckling.buckling``).
+    most : float, optional
+        Largest load over modulus, over what it is, by which n is less.
 
     Returns
     -------
     Scatter
         None at n <= 1, where no factor bounds it, and the link does not pass.
     """
-    least = found.least * (1.0 - found.error) if found is not None and not found.without else math.inf
+    least = found.least * (1.0 - found.error) / most if found is not None and not found.without else math.inf
     if not 1.0 < least < math.inf:
         return Scatter()
     detail = reason("bending_towards_buckling", factor=least)

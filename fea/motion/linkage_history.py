@@ -38,6 +38,9 @@ from alula.loads.states.loose_motion import loose_motion
 SPREAD = 5
 """Poses over the range, both ends included, at which the numbers of the linkage are computed besides the worst two."""
 
+FAR = 100.0
+"""Factor on the loads beyond which it does not matter what air and friction make of it."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinkageOverMotion:
@@ -115,19 +118,35 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
                 frame = build_frame(case, pose, loads, held=moved.held)
                 factor, solution = linkage_factor(frame), solve_frame(frame.model)
                 eyes = Scatter() if blind else compliance_range(case, frame, solution)
-                found.append((min(factor, dead_point_factor(frame, solution)), factor, i, eyes))
+                least = min(factor, dead_point_factor(frame, solution))
+                doubt = _otherwise(moved, load_case, evaluated, i, min(least, FAR))
+                found.append((min(least, FAR) if doubt.sources else least, factor, i, eyes.times(doubt)))
             except (CaseError, CannotRunError):
                 continue
         if not found:
             continue
-        least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
+        least, factor, i, slack = found[first_least([one[0] / one[3].high for one in found])]
         how, remedy = reason("unstable_at_pose", pose=when(moved, i), factor=least), reason("check_that_pose")
-        slack = stated_scatter(case, load_case).times(eyes)
+        slack = stated_scatter(case, load_case).times(slack)
         pins = forces_at(moved, load_case, i).pins if frame.pin_beams else None
         rims = None if pins is None else rim_factors(pins)
         outcome = by_linear_theory(load_case, least, factor, slack, how, remedy, rims)
         if outcome.verdict is not Verdict.PASS:
             yield outcome
+
+
+def _otherwise(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_], i: int, least: float) -> Scatter:
+    """Return what air and friction may make of the inverse of the least factor at a pose, itself at most ``FAR``."""
+
+    def inverse(one: CaseMotion) -> float:
+        loads = [chosen(load, i) for load in one.loads[load_case]]
+        frame = build_frame(one.case, one.motion.pose(i), loads, held=one.held)
+        return 1.0 / min(linkage_factor(frame), dead_point_factor(frame, solve_frame(frame.model)), FAR)
+
+    found = Scatter()
+    for cause in causes_over(moved, load_case, evaluated):
+        found = found.times(cause.of(1.0 / least, [inverse(one) for one in cause.others]))
+    return found
 
 
 def over_motion(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[str, LinkageOverMotion]:

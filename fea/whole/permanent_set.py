@@ -27,7 +27,7 @@ from alula.fea.judging.judge import of_link
 from alula.fea.judging.link_result import spread
 from alula.fea.judging.loading import Judged, SolvedLinks
 from alula.fea.judging.plastic_collapse import NEGLIGIBLE, NOT_SOLVED, above_first_yield, as_elastic
-from alula.fea.judging.solid_buckling import solid_buckling, solid_growth
+from alula.fea.judging.solid_buckling import bending_growth
 from alula.fea.outcomes.result import LinkResult
 from alula.fea.plastic.link_collapse import LinkCollapse
 from alula.fea.standing.joint_forces import JointForces
@@ -177,7 +177,7 @@ def ends_of_load(case: Case, link: str, load_case: str, result: LinkResult, unev
     -------
     Scatter
     """
-    loads = spread(case, link, load_case, "von_mises", uneven, shares, solid_growth(solid_buckling(result)))
+    loads = spread(case, link, load_case, "von_mises", uneven, shares, bending_growth(case, load_case, link, result))
     return loads.times(strength_scatter(case.material_of(link)).inverse)
 
 

@@ -38,6 +38,7 @@ def test_bending_of_a_solid_grows_as_towards_the_least_factor_that_its_mesh_allo
     assert solid_growth(buckling(300.0, 100.0)).high == pytest.approx(100.0 / 99.0)
     for least in (0.9, 1.1):  # 1.1 may be 0.99
         assert solid_growth(buckling(30.0, least, 0.1)).high == 1.0
+    assert solid_growth(buckling(8.0, 4.0, 0.2), 1.3).high == pytest.approx(3.2 / (3.2 - 1.3))
     assert solid_growth(None).sources == solid_growth(SolidBuckling.unknown("coarse")).sources == ()
 
 

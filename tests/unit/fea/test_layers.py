@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import layer_scatter
 from alula.fea.common.verdict import Verdict
-from alula.fea.judging.layers import layer_outcomes
+from alula.fea.judging.layers import in_any_direction, layer_outcomes
 from alula.fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
 from alula.fea.motion.envelope_result import LayerEnvelope
 from alula.fea.outcomes.layer_stress import LayerStress
@@ -253,3 +253,14 @@ def test_scatter_of_both_strengths_bounds_the_factor():
     assert layer_scatter(CARD.model_copy(update=dict.fromkeys(ranges))).sources == ()
     [(low, high)] = layer_limits(printed(**ranges), "AE")
     assert (low, high) == (pytest.approx(4.0 * 0.75), pytest.approx(4.0 * 2.0))
+
+
+@pytest.mark.parametrize("lost", [0, 1])
+def test_without_one_of_both_stresses_the_weakest_direction_bears_nothing_that_is_known(lost):
+    case = read_case(OWL, ['parts.tube.material="pla-fdm-xy"'])
+    stresses = [Band.exact(5.0), Band.exact(5.0)]
+    known = in_any_direction(case, "AE", Band.exact(6.0), *stresses)
+    stresses[lost] = Band.unknown()
+    found = in_any_direction(case, "AE", Band.exact(6.0), *stresses)
+    assert 0.0 < known.low < 6.0
+    assert (found.low, found.high) == (0.0, 6.0)

@@ -5,8 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.band import Band
 from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import friction_source
 from alula.fea.motion import linkage_history
 from alula.fea.nonlinear.stability import SNAP
 from alula.geometry.linkage.coordinate import Coordinate
@@ -49,6 +51,7 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         "compliance_range": lambda case, frame, solution: Scatter(high=eyes[frame.pose]),
         "dead_point_factor": lambda frame, solution: 100.0,
         "stated_scatter": lambda case, load_case: Scatter(),
+        "causes_over": lambda *_: (),
     }
     for name, stub in stubs.items():
         monkeypatch.setattr(linkage_history, name, stub)
@@ -67,3 +70,22 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
     [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
     assert "at crank = 20 deg" in told(found.reason)
     assert (found.value.value, found.value.low) == pytest.approx((24.0, 24.0 / SNAP / 6.0))
+
+    # Friction that makes it a tenth at the other pose turns that round; what makes it more changes nothing.
+    def rubbed(share):
+        other = SimpleNamespace(
+            case=None,
+            motion=SimpleNamespace(pose=lambda i: SimpleNamespace(share=share[i], i=i)),
+            loads={"push": ()},
+            held=None,
+        )
+        return [Alternatives(source=friction_source({}), others=(other,))]
+
+    def factor(frame):
+        return frame.pose.share * factors[frame.pose.i] if hasattr(frame.pose, "share") else factors[frame.pose]
+
+    monkeypatch.setattr(linkage_history, "linkage_factor", factor)
+    for share, (value, low) in (((0.1, 1.0), (20.0, 2.0 / SNAP)), ((2.0, 2.0), (24.0, 24.0 / SNAP / 6.0))):
+        monkeypatch.setattr(linkage_history, "causes_over", lambda *_, share=share: rubbed(share))
+        [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
+        assert (found.value.value, found.value.low) == pytest.approx((value, low))

@@ -11,6 +11,7 @@ from alula.fea.asked.asked import asked
 from alula.fea.check.run import check_case
 from alula.fea.common.band import Band
 from alula.fea.common.reason import reason
+from alula.fea.common.scatter import Scatter
 from alula.fea.common.verdict import Quantity, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging import notches
@@ -188,7 +189,7 @@ def judged(monkeypatch, found, case=None, growth=None):
     case = case or edited("knee", own(TOUGH))
     factors = iter(found)
     monkeypatch.setattr(notches, "notch_factor", lambda *of: next(factors))
-    monkeypatch.setattr(notches, "solid_buckling", lambda result: None)
+    monkeypatch.setattr(notches, "bending_growth", lambda *of: Scatter())
     plates = [SimpleNamespace(name=f"plate {n}") for n in range(len(found))]
     cases = [SimpleNamespace(load=plate.name) for plate in plates]
     decided = {"front": SimpleNamespace(solid=SimpleNamespace(solution=SimpleNamespace(cases=cases)))}
