@@ -34,9 +34,8 @@ from alula.fea.nonlinear.stability import beam_answers, stiffness_parts
 from alula.fea.pins.states import pin_states
 from alula.fea.vibration.flexibility_doubt import FlexibilityDoubt
 from alula.fea.vibration.mass_matrix import MassMatrix, mass_matrix
-from alula.fea.vibration.modes import Mode, NaturalModes, lowest
+from alula.fea.vibration.modes import Mode, NaturalModes, ends_between, lowest, with_scatter
 from alula.fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
-from alula.fea.vibration.scattered_loads import ends_between, with_scatter
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.linkage.placement import vector
 from alula.geometry.linkage.pose import Pose

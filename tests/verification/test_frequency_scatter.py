@@ -12,9 +12,8 @@ from alula.fea.nonlinear.equilibrium_path import EquilibriumPath
 from alula.fea.nonlinear.stability import stiffness_parts
 from alula.fea.vibration import flexibility_doubt
 from alula.fea.vibration.linkage_modes import _Held, frame_modes
-from alula.fea.vibration.modes import NaturalModes, frequency
+from alula.fea.vibration.modes import NaturalModes, ends_between, frequency
 from alula.fea.vibration.over_motion import case_frequencies
-from alula.fea.vibration.scattered_loads import ends_between
 from alula.loads.case.case_file import validate
 from alula.loads.states.actions import acting_loads, placed
 from alula.loads.states.masses import part_masses
