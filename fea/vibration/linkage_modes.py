@@ -4,9 +4,10 @@ They are those of small motions about the pose: (K + K_g) x = ω² M x with the 
 stiffness K_g of the forces that the load case's weight, inertia and stated loads make in it (``stiffness_parts``; so
 weights and springs hold a linkage), and the mass M of parts, pins and what links carry (``mass_matrix``). The pose is
 frozen: Coriolis and gyroscopic terms, and the change of inertia forces with the motion, are left out, which are small
-while links turn slowly beside the frequency. So are friction, play, and the air that moves along. Pins between layers
-are tight in both links; the low ends of bands have hinges in the holes in which they may run (``running_holes``). What
-the load closes of them is told beside it (``on_rims``).
+while links turn slowly beside the frequency. So are friction, play, a range of C_N, and the air that moves along. Pins
+between layers are tight in both links; the low ends of bands have hinges in the holes in which they may run
+(``running_holes``). What the load closes of them is told beside it (``on_rims``). Bands hold the scatter of the load
+case, whose forces are all in proportion, and masses as they are.
 
 The drive holds its link rigidly; with a stiffness of its own it is a spring about its joint or along its guide, about
 the state in which it held the linkage. A stop that bears is pressed on and holds rigidly. Where the pose balances by
