@@ -10,6 +10,10 @@ The compliance of the linkage in its own modes is 1/λ; a further flexibility dF
 of the modes (virtual work). The eigenvalues of that small matrix are the new 1/λ: exactly where equilibrium alone gives
 the forces, else to first order in dF, as displacements have it; and but for the modes that are left out, which
 ``BASIS`` makes negligible.
+
+Near buckling little of λ is left of a large stiffness, and what is soft takes more than that from it. So where the
+forces' own part G of the modes' stiffness is given, E = Λ - G is that of the material, dF makes E (E + Q)⁻¹ E of it
+with Q = qᵀ dF q, and the eigenvalues of E (E + Q)⁻¹ E + G are the new λ: without forces the same.
 """
 
 import math
@@ -35,6 +39,8 @@ from alula.loads.case.case import Case
 
 Floats = NDArray[np.float64]
 _PLAIN = np.ones(6)
+_RIGID = 1e-12
+"""Stiffness, over the largest of all modes, below which nothing is strained."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,8 +83,13 @@ def _width(ends: tuple[float, float], causes: int) -> float:
     return high / low if causes == 1 and low > 0.0 else math.nan
 
 
-def _ends(found: NaturalModes, change: _Change) -> list[tuple[float, float]]:
+def _ends(found: NaturalModes, change: _Change, pressed: Floats | None) -> list[tuple[float, float]]:
     """Least and largest frequency of every mode."""
+    if pressed is not None:
+        least, largest = (
+            [frequency(value) for value in _pressed(found, q, pressed)] for q in (change.more, change.less)
+        )
+        return list(zip(least, largest, strict=True))
     least, largest = (
         [frequency(1.0 / mu - found.shift) if mu > 0.0 else math.inf for mu in _sorted(found, more)]
         for more in (change.more, change.less)
@@ -90,6 +101,15 @@ def _sorted(found: NaturalModes, change: Floats) -> Floats:
     compliance = 1.0 / (found.values + found.shift)
     mu = np.linalg.eigvalsh(np.diag(compliance) + change * np.outer(compliance, compliance))
     return np.asarray(mu[::-1])
+
+
+def _pressed(found: NaturalModes, change: Floats, pressed: Floats) -> Floats:
+    """λ with a further flexibility, of modes of which the forces in the frame make a part of the stiffness."""
+    elastic = np.diag(found.values) - pressed
+    size, own = np.linalg.eigh(elastic + change)
+    strained = size > _RIGID * size[-1]
+    along = own[:, strained].T @ elastic
+    return np.asarray(np.linalg.eigvalsh(along.T @ (along / size[strained, None]) + pressed))
 
 
 class FlexibilityDoubt:
@@ -141,7 +161,9 @@ class FlexibilityDoubt:
             found.append([[factor * F - F, eyes - F, factor * eyes - F] for eyes, factor in ends])
         return np.array(numbers, dtype=np.int64), np.array(found).reshape(-1, 2, 3, 6, 6).transpose(1, 2, 0, 3, 4)
 
-    def bands(self, model: FrameModel, found: NaturalModes, shapes: Floats, count: int) -> list[Band]:
+    def bands(
+        self, model: FrameModel, found: NaturalModes, shapes: Floats, count: int, pressed: Floats | None = None
+    ) -> list[Band]:
         """Return the frequencies of the lowest modes with their bands.
 
         Parameters
@@ -154,6 +176,9 @@ class FlexibilityDoubt:
             Motions of the nodes, of unit modal mass.
         count : int
             Frequencies that are asked for.
+        pressed : ndarray, shape (c, c), optional
+            Part of the modes' stiffness that the forces in the frame make [rad²/s²]; where it is left out, all of it is
+            taken to be the material's.
 
         Returns
         -------
@@ -167,7 +192,7 @@ class FlexibilityDoubt:
             why = reason("frame_is_blind", link=blind, rigid=False)
             return [Band(value=value, low=0.0, high=math.inf, without=why) for value in values]
         modulus, eyes, both = self._changes(model, shapes)
-        ends = [_ends(found, change) for change in (modulus, eyes, both)]
+        ends = [_ends(found, change, pressed) for change in (modulus, eyes, both)]
         scatters = [compliance_scatter(self.case.material_of(link)) for link in links]
         ranges = distinct(*(one.sources for one in scatters))
         bands = []

@@ -4,16 +4,17 @@ They are those of small motions about the pose: (K + K_g) x = ω² M x with the 
 stiffness K_g of the forces that the load case's weight, inertia and stated loads make in it (``stiffness_parts``; so
 weights and springs hold a linkage), and the mass M of parts, pins and what links carry (``mass_matrix``). The pose is
 frozen: Coriolis and gyroscopic terms, and the change of inertia forces with the motion, are left out, which are small
-while links turn slowly beside the frequency. So are friction, play, and the air that moves along. Pins between layers
-are tight in both links; the low ends of bands have hinges in the holes in which they may run (``running_holes``). What
-the load closes of them is told beside it (``on_rims``).
+while links turn slowly beside the frequency. So are friction, play, a range of C_N, and the air that moves along. Pins
+between layers are tight in both links; the low ends of bands have hinges in the holes in which they may run
+(``running_holes``). What the load closes of them is told beside it (``on_rims``). Bands hold the scatter of the load
+case, whose forces are all in proportion, and masses as they are.
 
 The drive holds its link rigidly; with a stiffness of its own it is a spring about its joint or along its guide, about
 the state in which it held the linkage. A stop that bears is pressed on and holds rigidly. Where the pose balances by
 itself nothing holds but springs and weights.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from alula.fea.common.band import Band
 from alula.fea.common.reason import Reason, reason
+from alula.fea.common.scatter import load_scatter
 from alula.fea.frame.build import ALONG_PINS, build_frame
 from alula.fea.frame.linear import FrameSolution, solve_frame
 from alula.fea.frame.linkage_frame import LinkageFrame
@@ -33,7 +35,7 @@ from alula.fea.nonlinear.stability import beam_answers, stiffness_parts
 from alula.fea.pins.states import pin_states
 from alula.fea.vibration.flexibility_doubt import FlexibilityDoubt
 from alula.fea.vibration.mass_matrix import MassMatrix, mass_matrix
-from alula.fea.vibration.modes import Mode, NaturalModes, lowest
+from alula.fea.vibration.modes import Mode, NaturalModes, ends_between, lowest, with_scatter
 from alula.fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
 from alula.geometry.base.errors import CannotRunError
 from alula.geometry.linkage.placement import vector
@@ -136,10 +138,15 @@ def linkage_modes(
     def solved(path: EquilibriumPath, mass: MassMatrix) -> tuple[tuple[Mode, ...], float]:
         more = len(path.model.guides) - len(own.model.guides)
         K, G = stiffness_parts(path, own.held.end_forces, np.append(own.guide_forces, np.zeros(more)), beams)
-        found = frame_modes(path, K + G + own.drive(path), mass, count + BASIS)
+
+        def swings(share: float) -> tuple[NaturalModes, Floats]:
+            found = frame_modes(path, K + share * G + own.drive(path), mass, count + BASIS)
+            return found, found.vectors.T @ G @ found.vectors
+
+        found, modes = own.modes(path, mass, swings, count)
         unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
         rate = float(np.sqrt(-found.values[0])) if unstable.any() else 0.0
-        return _modes(path, mass, found, count, own.doubt), rate
+        return modes, rate
 
     (modes, rate), holes = solved(tight, own.mass), running_holes(case)
     if holes:
@@ -183,10 +190,14 @@ def on_rims(case: Case, found: LinkageModes, masses: Mapping[str, PartMass]) -> 
     modes, count = tuple[Mode, ...](), len(found.modes)
     with suppress(CannotRunError):  # where pins lean that have no mass of their own
         Z, M = known.allowed, own.mass.bordered(path)
-        whole = known.plain + known.pressed
-        swings = lowest(whole, np.pad(Z.T @ M @ Z, (0, len(whole) - Z.shape[1])), count + BASIS)
-        swings = replace(swings, vectors=Z @ swings.vectors[: Z.shape[1]])
-        modes = _modes(path, own.mass, swings, count, own.doubt)
+        heavy = np.pad(Z.T @ M @ Z, (0, len(known.plain) - Z.shape[1]))
+
+        def swings(share: float) -> tuple[NaturalModes, Floats]:
+            found = lowest(known.plain + share * known.pressed, heavy, count + BASIS)
+            X = found.vectors
+            return replace(found, vectors=Z @ X[: Z.shape[1]]), X.T @ known.pressed @ X
+
+        _, modes = own.modes(path, own.mass, swings, count)
     rims = RimModes(
         frequency=modes[0].frequency if modes else None,
         touching=tangent.touching,
@@ -212,6 +223,31 @@ class _Held:
         carried = case.load_cases[load_case].carried
         self.mass = mass_matrix(case, frame, self.model, self.parents, masses, carried=carried)
         self.doubt = FlexibilityDoubt(case, frame, self.model, self.parents)
+        self.scatter = load_scatter(case, load_case)
+
+    def modes(
+        self,
+        path: EquilibriumPath,
+        mass: MassMatrix,
+        swings: Callable[[float], tuple[NaturalModes, Floats]],
+        count: int,
+    ) -> tuple[NaturalModes, tuple[Mode, ...]]:
+        """Return what swings under the stated loads, and modes whose bands hold the scatter of these loads.
+
+        ``swings`` tells, at a share of the loads, what swings in the unknowns of the path, and the part of its
+        stiffness (c, c) that all of the loads make.
+        """
+        found, work = swings(1.0)
+        if not self.scatter.sources:
+            return found, _modes(path, mass, found, count, self.doubt)
+        modes, others = _modes(path, mass, found, count, self.doubt, work), []
+        ends = self.scatter.low, self.scatter.high
+        for share in ends:
+            others.append(tuple[Mode, ...]())
+            with suppress(CannotRunError):  # where what has no mass is unstable there
+                there, pressed = swings(share)
+                others[-1] = _modes(path, mass, there, count, self.doubt, share * pressed)
+        return found, with_scatter(modes, others, ends_between(found, work, ends, count), self.scatter)
 
     def drive(self, path: EquilibriumPath) -> Floats:
         """Stiffness of the drive (k + g, k + g)."""
@@ -273,11 +309,16 @@ def divide(frame: LinkageFrame, subdivisions: int) -> tuple[FrameModel, NDArray[
 
 
 def _modes(
-    path: EquilibriumPath, mass: MassMatrix, found: NaturalModes, count: int, doubt: FlexibilityDoubt
+    path: EquilibriumPath,
+    mass: MassMatrix,
+    found: NaturalModes,
+    count: int,
+    doubt: FlexibilityDoubt,
+    pressed: Floats | None = None,
 ) -> tuple[Mode, ...]:
-    """Modes with the bands of their frequencies."""
+    """Modes with the bands of their frequencies; ``pressed`` is what the forces make of their stiffness."""
     shapes = node_motions(path, found.vectors)
-    bands = doubt.bands(path.model, found, shapes, count)
+    bands = doubt.bands(path.model, found, shapes, count, pressed)
     modes = []
     for shape, band in zip(shapes, bands, strict=False):
         whole, plane = mass.energies(shape)

@@ -149,7 +149,8 @@ def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float
     if air is not None and airs is not None and (others := airs.at(title)):
         lows = {air.normal_coefficient: low}
         for coefficient, other in zip(air.ends, others, strict=True):
-            _, lows[coefficient], end, _ = _loosened(other, title, of)
+            locks = not np.isfinite(other.torque[title]).all()
+            _, lows[coefficient], end, _ = (0.0, 0.0, math.inf, ()) if locks else _loosened(other, title, of)
             high = max(high, end)
         low = max(least_of_convex(lows.items()), 0.0)
         sources = (*sources, air_source(*air.ends))

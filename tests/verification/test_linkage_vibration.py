@@ -169,6 +169,25 @@ def hanging(**load):
     return case_of(LEVER, **tables)
 
 
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_slider_swings_in_a_range_where_its_load_scatters(sense):
+    """The load takes from its frequency or adds to it, with the guide and the drive that gives."""
+
+    def swung(force, **more):
+        force = [{"link": "upper", "at": "A", "force": ["0 N", f"{force} N"]}]
+        case = case_of(PRESS, load_cases={"heavy": {"own_weight": False, "forces": force, **more}})
+        [history] = case_frequencies(case).histories.values()
+        return [mode.frequency for mode in history.lowest.modes]
+
+    own, ends = swung(sense * 2000.0, scatter="30 %"), [swung(s * sense * 2000.0) for s in (0.7, 1.3)]
+    assert ends[0][0].value != pytest.approx(ends[1][0].value, rel=0.02)
+    for band, *others in zip(own, *ends, strict=True):
+        assert band.low <= min(one.value for one in others)
+        assert band.high >= max(one.value for one in others)
+    assert own[0].low == pytest.approx(min(one[0].low for one in ends), rel=0.02)
+    assert own[0].high == pytest.approx(max(one[0].high for one in ends), rel=0.02)
+
+
 @pytest.mark.parametrize("gravity", ["9.81 m/s^2", "40 m/s^2"])
 def test_a_compound_pendulum_that_nothing_but_its_weight_holds(gravity):
     """f = √(m g c/I_O)/(2π), with mass, centroid and inertia of bar and body by the kernel and by hand."""

@@ -71,7 +71,10 @@ def test_what_a_motor_needs_in_a_range_of_air_has_the_outer_ends_of_all_airs(mon
     air = SimpleNamespace(normal_coefficient=2.0, ends=(1.0, 3.0))
     load_case = SimpleNamespace(flapping=air, scatter=(0.5, 2.0))
     stated, least, largest = (
-        SimpleNamespace(c=c, rubbing={}, case=SimpleNamespace(load_cases={"flap": load_case})) for c in (2.0, 1.0, 3.0)
+        SimpleNamespace(
+            c=c, rubbing={}, case=SimpleNamespace(load_cases={"flap": load_case}), torque={"flap": np.zeros(3)}
+        )
+        for c in (2.0, 1.0, 3.0)
     )
     monkeypatch.setattr(motor, "friction_range", lambda moved: ())
     monkeypatch.setattr(motor, "air_range", lambda moved: SimpleNamespace(at=lambda title: (least, largest)))
@@ -85,6 +88,24 @@ def test_what_a_motor_needs_in_a_range_of_air_has_the_outer_ends_of_all_airs(mon
     both = motor._band(stated, "flap", lambda torque: (0.0, 0.0, 0.0))
     more = 8.0 / 5.0 if heaviest != 2.0 else 1.0
     assert (both.value, both.low, both.high) == pytest.approx((2.0, 0.5 * (1.0 + 1.5 - 2.0), 2.0 * 9.0 * more))
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_a_linkage_that_locks_itself_at_an_end_of_the_air_asks_for_a_power_without_end(monkeypatch, end) -> None:
+    """Without play: its torque is not a number there at one pose, and is zero and 1 N mm else."""
+    air = SimpleNamespace(normal_coefficient=2.0, ends=(1.0, 3.0))
+    cases = SimpleNamespace(load_cases={"flap": SimpleNamespace(flapping=air, scatter=(1.0, 1.0))})
+    torques = [np.array([0.0, math.nan if i == end else 1.0]) for i in (0, 1)]
+
+    def in_air(torque):
+        forces = {"flap": SimpleNamespace(drive_torque=torque)}
+        return SimpleNamespace(case=cases, rubbing={}, torque={"flap": torque}, forces=forces)
+
+    monkeypatch.setattr(motor, "friction_range", lambda moved: ())
+    monkeypatch.setattr(motor, "loose_motion", lambda moved: None)
+    monkeypatch.setattr(motor, "air_range", lambda moved: SimpleNamespace(at=lambda title: map(in_air, torques)))
+    band = motor._band(in_air(np.array([0.0, 2.0])), "flap", lambda torque: (torque.sum(), torque.sum(), torque.max()))
+    assert (band.value, band.low, band.high) == (2.0, 0.0, math.inf)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
