@@ -14,7 +14,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.source import SourceKind
 from alula.fea.common.verdict import Quantity, Verdict, deciding
 from alula.fea.doubts.load_growth import Growths
-from alula.fea.judging import plastic_collapse
+from alula.fea.judging import plastic_collapse, solid_buckling
 from alula.fea.judging.link_result import by_hand_shares
 from alula.fea.judging.plastic_collapse import above_first_yield, as_elastic, judge_collapse
 from alula.fea.plastic.load_path import NoPlasticStateError
@@ -76,7 +76,7 @@ def test_the_range_of_the_strength_multiplies_the_band():
 def test_bending_that_grows_towards_buckling_of_the_solid_multiplies_the_band(monkeypatch):
     """At a fifth of the buckling load bending is at most 1/(1 - 1/5) of that of the solid, which is linear."""
     buckles = SolidBuckling(value=6.0, least=5.0, most=9.0, error=0.0)
-    monkeypatch.setattr(plastic_collapse, "solid_buckling", lambda result: buckles)
+    monkeypatch.setattr(solid_buckling, "solid_buckling", lambda result: buckles)
     outcome = judged(edited("knee", [FRONT]), {"front": FOUND})
     assert outcome.value.low == pytest.approx(1.9 * 0.8)
     assert outcome.value.high == pytest.approx(2.2)
