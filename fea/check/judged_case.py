@@ -80,6 +80,7 @@ def judged(
         ways=lambda: (reactions, *forces.sharings),
         loads=lambda link: [loads for loads, _ in hand.plates[link]],
         hands=lambda link: [own for _, own in hand.plates[link]],
+        others=hand.others,
         joint_growth=lambda joint: hand.uneven.joints.get(joint, Scatter()),
         link_growth=lambda link: stressed.get(link, Scatter()),
         growth_through=hand.growth_through,

@@ -253,6 +253,19 @@ class LoadCaseByHand:
         found = open_ranges(self.case, link, self.load_case, uneven, shares)
         return {loads.name: found for loads, _ in self.plates[link]}
 
+    def others(self, link: str) -> list[LinkByHand]:
+        """Return the hand calculations of a link, or of its plates, in other air and with other friction.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        list of LinkByHand
+        """
+        return [own for doubt in self.doubts for one in doubt.cause.others for _, own in one.plates[link]]
+
     def columns(self, link: str) -> Plates:
         """Return the plates of a link of which the slenderest is judged as a column.
 

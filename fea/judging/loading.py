@@ -60,6 +60,8 @@ class Loading:
         Returns joint forces in all ways in which pins may share couples, first those that stand.
     loads, hands : callable
         Of a link: what acts on it, and its hand calculation; of a pair one of each plate.
+    others : callable
+        Of a link, to its hand calculations in other air and with other friction.
     joint_growth, link_growth : callable
         Of a joint, to how its force grows beside scattered loads (``alula.fea.doubts.load_growth``); of a link, to how
         its stress by hand does.
@@ -72,6 +74,7 @@ class Loading:
     ways: Callable[[], Sequence[Equilibrium]]
     loads: Callable[[str], Sequence[LinkLoads]]
     hands: Callable[[str], Sequence[LinkByHand]]
+    others: Callable[[str], Sequence[LinkByHand]]
     joint_growth: Callable[[str], Scatter]
     link_growth: Callable[[str], Scatter]
     growth_through: Callable[[str, Demand], Scatter]

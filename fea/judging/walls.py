@@ -5,6 +5,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -197,13 +198,17 @@ def judge_walls(here: Loading, one: Asked) -> Judged:
     Judged
     """
     found = _modes(here, one)
-    return Judged(outcome=wall_outcome(here.load_case, one, found), numbers=found)
+    numbers = tuple(mode for mode in found if math.isfinite(mode.factor.value))
+    return Judged(outcome=wall_outcome(here.load_case, one, found), numbers=numbers)
 
 
 def _modes(here: Loading, one: Asked) -> tuple[WallFactor, ...]:
     link = one.subject.name
-    beams = [hand.check for hand in here.hands(link)]
-    return tuple(wall_factors(here.case, here.load_case, one, beams, here.link_growth(link)))
+    beams, others = ([hand.check for hand in hands] for hands in (here.hands(link), here.others(link)))
+    found = [*wall_factors(here.case, here.load_case, one, beams, here.link_growth(link))]
+    # What pulls as stated may press in other air, or with other friction, of which no growth of stress tells.
+    may = wall_factors(here.case, here.load_case, one, others, Scatter())
+    return (*found, *(replace(mode, factor=replace(mode.factor, value=math.inf, high=math.inf)) for mode in may))
 
 
 def least_of_walls(over: OverMotion, one: Asked) -> Floats:

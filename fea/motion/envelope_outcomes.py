@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.fea.asked.asked import Asked, asked
-from alula.fea.buckling.buckling import column_outcome, worst_column
+from alula.fea.buckling.buckling import StraightColumn, column_outcome, worst_column
 from alula.fea.check.kinds import BY_HAND
 from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
@@ -26,7 +26,8 @@ from alula.fea.judging.solid_buckling import undecided_buckling
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.envelope_result import LayerEnvelope, LinkEnvelope
 from alula.fea.motion.layered import forces_at
-from alula.fea.motion.linkage_history import when
+from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.linkage_history import causes_over, when
 from alula.fea.motion.loading import loading_over
 from alula.fea.motion.loosened import column_growth
 from alula.fea.outcomes.pins import (
@@ -296,20 +297,31 @@ def column_outcomes(
             if not moved.case.part_of(link).is_beam:
                 yield undecided_buckling(load_case, link, NOT_FOLLOWED)
                 continue
-            found = []
-            for history in histories:  # of both plates of a pair
-                if history.name == load_case:
-                    factors = factors_over_motion(moved.case, link, history)
-                    compression, _ = axial_compression(moved.case, link, history)
-                    found.append(worst_column(moved.case, link, compression, factors, evaluated))
-            columns = [column for column in found if column is not None]
+            columns, spread = _columns(moved.case, load_case, link, histories, evaluated), None
+            for cause in () if columns else causes_over(moved, load_case, evaluated):  # it may be pressed all the same
+                for other in cause.others:
+                    columns += _columns(other.case, load_case, link, link_histories(other, link), evaluated)
+                spread = Scatter(low=0.0, sources=(cause.source,))
             if columns:
                 column = min(columns, key=lambda one: one.value)
                 outcome = column_outcome(moved.case, load_case, link, column, where=when(moved, column.pose))
-                spread = column_growth(moved, load_case, link, evaluated)
+                spread = spread or column_growth(moved, load_case, link, evaluated)
                 if grown and link in grown[load_case].columns:
                     spread = spread.times(grown[load_case].columns[link])
                 yield _complete(widened(outcome, spread), evaluated)
+
+
+def _columns(
+    case: Case, load_case: str, link: str, histories: Sequence[LinkLoads], evaluated: NDArray[np.bool_]
+) -> list[StraightColumn]:
+    """The worst column of a link, or of each plate of a pair, that is compressed at a pose."""
+    found = []
+    for history in histories:
+        if history.name == load_case:
+            factors = factors_over_motion(case, link, history)
+            compression, _ = axial_compression(case, link, history)
+            found.append(worst_column(case, link, compression, factors, evaluated))
+    return [column for column in found if column is not None]
 
 
 def _complete(outcome: CheckOutcome, evaluated: NDArray[np.bool_]) -> CheckOutcome:

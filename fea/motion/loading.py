@@ -13,6 +13,8 @@ from alula.fea.doubts.load_growth import Growths
 from alula.fea.judging.loading import Demand, OverMotion, Real
 from alula.fea.links.link_by_hand import LinkByHand, link_by_hand
 from alula.fea.motion.layered import forces_at, has_couples
+from alula.fea.motion.link_history import link_histories
+from alula.fea.motion.linkage_history import causes_over
 from alula.fea.motion.loosened import joint_growth, most_at_each
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.statics import Equilibrium
@@ -77,6 +79,15 @@ def loading_over(
         def hands(link: str) -> list[LinkByHand]:
             return [link_by_hand(case, link, one) for one in here(link)]
 
+        def others(link: str) -> list[LinkByHand]:
+            every = [one for cause in causes_over(moved, load_case, evaluated) for one in cause.others]
+            return [
+                link_by_hand(one.case, link, history.chosen(pose))
+                for one in every
+                for history in link_histories(one, link)
+                if history.name == load_case
+            ]
+
         def grows(joint: str) -> Scatter:
             return replace(force(joint), high=float(most(joint)[pose]))
 
@@ -85,6 +96,7 @@ def loading_over(
             ways=lambda: ways(pose),
             loads=here,
             hands=hands,
+            others=others,
             joint_growth=grows,
             pin_growth=lambda joint: grows(joint).times(grown.pins.get(joint, Scatter())),
         )
@@ -95,6 +107,7 @@ def loading_over(
         ways=lambda: (solved,),
         loads=loads,
         hands=lambda link: (),
+        others=lambda link: (),
         joint_growth=force,
         most_growth=most,
         link_growth=lambda link: Scatter() if stressed is None else stressed(load_case, link),

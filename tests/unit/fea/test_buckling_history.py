@@ -11,8 +11,11 @@ from rocker_case import TOML
 from alula.fea.beam.cut_free import beam_loads
 from alula.fea.beam.theory import BeamCheck, check_beam, internal_forces
 from alula.fea.buckling.buckling import ColumnFactors, column, worst_column
+from alula.fea.common.alternatives import Alternatives
 from alula.fea.common.link_loads import LinkLoads, PinLoad
 from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import air_source
+from alula.fea.common.verdict import CheckOutcome
 from alula.fea.motion import envelope_outcomes
 from alula.fea.motion.buckling_history import axial_compression, factors_over_motion
 from alula.fea.motion.link_history import link_histories
@@ -21,7 +24,7 @@ from alula.geometry.linkage.coordinate import Coordinate
 from alula.loads.case.case import Case
 from alula.loads.case.case_file import read_case, validate
 from alula.loads.records.applied import LineLoad
-from alula.loads.states.case_motion import solve_case_motion
+from alula.loads.states.case_motion import CaseMotion, solve_case_motion
 from alula.reports.sentences import told
 
 CASES = [
@@ -141,3 +144,32 @@ def test_compression_by_spread_loads_is_largest_between_stations() -> None:
     line = LineLoad(link="rocker", start=0.0, end=40.0, at_start=at[0], at_end=at[1], axes="link")
     largest, _ = axial_compression(case, "rocker", LinkLoads(name="turn", pins=pins, lines=(line,)))
     assert largest == pytest.approx([45.0, 40.0, 40.0])
+
+
+def test_a_link_that_is_pressed_in_other_air_alone_is_judged_as_a_column(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As stated it is pulled at all poses; in the other answer it is pressed as much."""
+
+    def pushed(force: str) -> Case:
+        return edited(
+            "four-bar",
+            [
+                "checks={}",
+                'load_cases={ lift={ forces=[{ link="rocker", at="B", axes="link", force='
+                f'["{force}", "0 N"] }}] }} }}',
+                "motion.poses=5",
+            ],
+        )
+
+    pulled, pressed = (solve_case_motion(pushed(force)) for force in ("200 N", "-200 N"))
+    every = np.ones(5, dtype=bool)
+
+    def outcomes(moved: CaseMotion) -> list[CheckOutcome]:
+        return list(envelope_outcomes.column_outcomes(moved, {"rocker": link_histories(moved, "rocker")}, every))
+
+    assert outcomes(pulled) == []
+    [itself] = outcomes(pressed)
+    cause = Alternatives(source=air_source(1.0, 2.0), others=(pulled, pressed))
+    monkeypatch.setattr(envelope_outcomes, "causes_over", lambda *_: [cause])
+    [found] = outcomes(pulled)
+    assert found.value.value == pytest.approx(itself.value.value)
+    assert (found.value.low, found.value.high) == (pytest.approx(itself.value.low), np.inf)

@@ -3,6 +3,7 @@
 import math
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from edited_cases import edited
 from wall_case import checked, strip, walls
 
 from alula.fea.asked.asked import asked
+from alula.fea.beam.cut_free import link_loads
 from alula.fea.buckling.buckling import column
 from alula.fea.buckling.lateral import ABOUT_Y, ABOUT_Z, lateral_factor
 from alula.fea.buckling.wall import BENDING, COMPRESSION, flattening_moment, knock_down, perfect_stress
@@ -19,12 +21,13 @@ from alula.fea.common.scatter import Scatter, compliance_scatter
 from alula.fea.common.sought import LEFT
 from alula.fea.common.source import COUPLES, Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
-from alula.fea.judging.walls import EXACT, ROUND, wall_factors, wall_outcome
+from alula.fea.judging.walls import EXACT, ROUND, judge_walls, wall_factors, wall_outcome
 from alula.fea.links.link_by_hand import HandStates, link_by_hand
 from alula.fea.modes.wall_modes import WallFactor, WallMode
 from alula.fea.motion.envelope import _Envelope
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.link_history import link_histories
+from alula.fea.standing.case_statics import solve_case_statics
 from alula.fea.superposition.link_answers import LinkAnswers, widest
 from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
@@ -334,3 +337,36 @@ def test_other_shapes_are_refused(change, said):
     with pytest.raises(CaseError) as error:
         walls(change)
     assert said in str(error.value)
+
+
+def test_a_link_that_is_pressed_in_other_air_alone_has_a_low_end():
+    """As stated the strut is pulled; in the other answer it is pressed as in the case, and lets its wall buckle."""
+
+    def lifted(tables):
+        tables["load_cases"]["tip"]["forces"][0]["force"] = ["20 N", "200 N"]
+
+    def hand(case):
+        moved = solve_case_statics(case)
+        loads = link_loads("tip", "strut", case.body("strut"), moved.reactions["tip"], moved.loads["tip"])
+        return link_by_hand(case, "strut", loads)
+
+    pressed, pulled = walls(), walls(lifted)
+    [one] = [one for one in asked(pulled, WallCheck) if one.subject.name == "strut"]
+
+    def judged(others):
+        return judge_walls(
+            SimpleNamespace(
+                case=pulled,
+                load_case="tip",
+                hands=lambda link: [hand(pulled)],
+                others=lambda link: others,
+                link_growth=lambda link: Scatter(),
+            ),
+            one,
+        )
+
+    alone, found = judged([]), judged([hand(pulled), hand(pressed)])
+    assert alone.outcome.value.low == math.inf
+    assert found.outcome.value.value == math.inf
+    assert found.outcome.value.low == pytest.approx(outcome_of(checked(pressed), "strut").value.low)
+    assert found.numbers == ()
