@@ -110,7 +110,7 @@ def sharing_doubt(
         return Growths()
     links = case.checked_links if links is None else links
     answers = {link: sharing_answers(case, load_case, link, forces, loads, grown=grown) for link in links}
-    return growths_by_hand(case, forces.reactions, forces.sharings, _sizes(COUPLES), answers)
+    return growths_by_hand(case, forces.reactions, forces.sharings, of_sizes(widest(COUPLES)), answers)
 
 
 def sharing_answers(
@@ -271,15 +271,25 @@ def _joints(stated: Reactions, changes: Sequence[Reactions], rule: ForceRule) ->
     return found
 
 
-def _sizes(sources: tuple[Source, ...]) -> ForceRule:
-    """The rule of alternatives: the largest size of a force, and the least along the stated one."""
+def of_sizes(rule: Rule) -> ForceRule:
+    """Return the rule of joint forces in alternatives: the largest of their sizes, and the least along the stated one.
 
-    def rule(force: NDArray[np.float64], others: NDArray[np.float64]) -> Scatter:
+    Parameters
+    ----------
+    rule : callable
+        Of numbers.
+
+    Returns
+    -------
+    callable
+    """
+
+    def of_forces(force: NDArray[np.float64], others: NDArray[np.float64]) -> Scatter:
         size = float(np.linalg.norm(force))
         along = others @ force / (size or 1.0)
-        return widest(sources)(size, [*along.tolist(), *np.linalg.norm(others, axis=1).tolist()])
+        return rule(size, [*along.tolist(), *np.linalg.norm(others, axis=1).tolist()])
 
-    return rule
+    return of_forces
 
 
 def _steps(sources: tuple[Source, ...]) -> ForceRule:

@@ -5,7 +5,8 @@ import pytest
 
 from alula.fea.common.sought import LEFT
 from alula.fea.common.source import COUPLES
-from alula.fea.doubts.force_doubt import _sizes, _steps
+from alula.fea.doubts.force_doubt import _steps, of_sizes
+from alula.fea.superposition.link_answers import widest
 
 STATED = np.array([1.0, 0.0])
 
@@ -19,7 +20,7 @@ STATED = np.array([1.0, 0.0])
     ],
 )
 def test_of_alternatives_the_largest_size_counts(others, low, high):
-    found = _sizes(COUPLES)(STATED, np.array(others))
+    found = of_sizes(widest(COUPLES))(STATED, np.array(others))
     assert low - 2.0 * LEFT * high <= found.low <= low
     assert high <= found.high <= (1.001 + 2.0 * LEFT) * high  # the search may have left something
 
@@ -37,8 +38,8 @@ def test_steps_add_up_along_the_force_and_across_it(others, low, high):
     assert (found.low, found.high) == pytest.approx((low, high))
 
 
-@pytest.mark.parametrize("rule", [_sizes, _steps])
+@pytest.mark.parametrize("rule", [of_sizes(widest(COUPLES)), _steps(COUPLES)])
 def test_a_joint_that_bears_nothing_as_stated_may_bear_any(rule):
     none = np.zeros(2)
-    assert rule(COUPLES)(none, np.zeros((2, 2))).high == 1.0
-    assert rule(COUPLES)(none, np.array([(0.0, 0.0), (0.0, 1.0)])).high == np.inf
+    assert rule(none, np.zeros((2, 2))).high == 1.0
+    assert rule(none, np.array([(0.0, 0.0), (0.0, 1.0)])).high == np.inf

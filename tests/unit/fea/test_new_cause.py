@@ -14,7 +14,7 @@ from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity
 from alula.fea.doubts import causes
 from alula.fea.doubts.causes import CAUSES, OnLinks, Stated
-from alula.fea.doubts.force_doubt import growths_by_hand
+from alula.fea.doubts.force_doubt import growths_by_hand, of_sizes
 from alula.fea.links.link_by_hand import on_plates
 from alula.fea.superposition.link_answers import LinkAnswers
 from alula.loads.statics.statics import Reactions
@@ -54,7 +54,9 @@ def gusting(name: str, factors: tuple[float, float]) -> Callable[[Stated], OnLin
 
         reactions = stated.forces.reactions
         by_link = {link: answers(link) for link in stated.case.checked_links}
-        growths = growths_by_hand(stated.case, reactions, [of_all(reactions, x) for x in factors], rule, by_link)
+        growths = growths_by_hand(
+            stated.case, reactions, [of_all(reactions, x) for x in factors], of_sizes(rule), by_link
+        )
         return OnLinks(name=name, growths=growths, on_link=answers)
 
     return found
