@@ -205,7 +205,7 @@ def judge_walls(here: Loading, one: Asked) -> Judged:
 def _modes(here: Loading, one: Asked) -> tuple[WallFactor, ...]:
     link = one.subject.name
     beams, others = ([hand.check for hand in hands] for hands in (here.hands(link), here.others(link)))
-    found = [*wall_factors(here.case, here.load_case, one, beams, here.link_growth(link))]
+    found = wall_factors(here.case, here.load_case, one, beams, here.link_growth(link))
     # What pulls as stated may press in other air, or with other friction, of which no growth of stress tells.
     may = wall_factors(here.case, here.load_case, one, others, Scatter())
     return (*found, *(replace(mode, factor=replace(mode.factor, value=math.inf, high=math.inf)) for mode in may))

@@ -13,6 +13,7 @@ from alula.fea.common.band import Band
 from alula.fea.common.link_loads import LinkLoads
 from alula.fea.common.reason import reason, together
 from alula.fea.common.scatter import Scatter
+from alula.fea.common.source import Source
 from alula.fea.common.verdict import CheckOutcome, Verdict
 from alula.fea.doubts.load_growth import Growths
 from alula.fea.doubts.other_case import widened
@@ -297,15 +298,20 @@ def column_outcomes(
             if not moved.case.part_of(link).is_beam:
                 yield undecided_buckling(load_case, link, NOT_FOLLOWED)
                 continue
-            columns, spread = _columns(moved.case, load_case, link, histories, evaluated), None
-            for cause in () if columns else causes_over(moved, load_case, evaluated):  # it may be pressed all the same
-                for other in cause.others:
-                    columns += _columns(other.case, load_case, link, link_histories(other, link), evaluated)
-                spread = Scatter(low=0.0, sources=(cause.source,))
+            columns, sources = _columns(moved.case, load_case, link, histories, evaluated), tuple[Source, ...]()
+            for cause in () if columns else tuple(causes_over(moved, load_case, evaluated)):
+                pressed = [
+                    column
+                    for other in cause.others
+                    for column in _columns(other.case, load_case, link, link_histories(other, link), evaluated)
+                ]
+                columns, sources = [*columns, *pressed], (*sources, *((cause.source,) if pressed else ()))
             if columns:
                 column = min(columns, key=lambda one: one.value)
                 outcome = column_outcome(moved.case, load_case, link, column, where=when(moved, column.pose))
-                spread = spread or column_growth(moved, load_case, link, evaluated)
+                # Where it is pressed in another answer alone, it may bear without end as well.
+                endless = Scatter(low=0.0, sources=sources)
+                spread = endless if sources else column_growth(moved, load_case, link, evaluated)
                 if grown and link in grown[load_case].columns:
                     spread = spread.times(grown[load_case].columns[link])
                 yield _complete(widened(outcome, spread), evaluated)

@@ -1,5 +1,6 @@
 """The linkage as a whole over a motion: whether it may give way by its linear frame, and its numbers at some poses."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -140,8 +141,11 @@ def _otherwise(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_], 
 
     def inverse(one: CaseMotion) -> float:
         loads = [chosen(load, i) for load in one.loads[load_case]]
-        frame = build_frame(one.case, one.motion.pose(i), loads, held=one.held)
-        return 1.0 / min(linkage_factor(frame), dead_point_factor(frame, solve_frame(frame.model)), FAR)
+        try:
+            frame = build_frame(one.case, one.motion.pose(i), loads, held=one.held)
+            return 1.0 / min(linkage_factor(frame), dead_point_factor(frame, solve_frame(frame.model)), FAR)
+        except (CaseError, CannotRunError):  # the stated answer is known, and may not pass by it alone
+            return math.inf
 
     found = Scatter()
     for cause in causes_over(moved, load_case, evaluated):

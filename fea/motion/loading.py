@@ -16,6 +16,7 @@ from alula.fea.motion.layered import forces_at, has_couples
 from alula.fea.motion.link_history import link_histories
 from alula.fea.motion.linkage_history import causes_over
 from alula.fea.motion.loosened import joint_growth, most_at_each
+from alula.loads.case.case import Case
 from alula.loads.states.case_motion import CaseMotion
 from alula.loads.statics.statics import Equilibrium
 
@@ -54,6 +55,11 @@ def loading_over(
         return [one for one in loaded.get(link, ()) if one.name == load_case]
 
     @cache
+    def otherwise(link: str) -> list[tuple[Case, LinkLoads]]:
+        every = [one for cause in causes_over(moved, load_case, evaluated) for one in cause.others]
+        return [(one.case, own) for one in every for own in link_histories(one, link) if own.name == load_case]
+
+    @cache
     def force(joint: str) -> Scatter:
         return joint_growth(moved, load_case, joint, evaluated).times(grown.joints.get(joint, Scatter()))
 
@@ -80,13 +86,7 @@ def loading_over(
             return [link_by_hand(case, link, one) for one in here(link)]
 
         def others(link: str) -> list[LinkByHand]:
-            every = [one for cause in causes_over(moved, load_case, evaluated) for one in cause.others]
-            return [
-                link_by_hand(one.case, link, history.chosen(pose))
-                for one in every
-                for history in link_histories(one, link)
-                if history.name == load_case
-            ]
+            return [link_by_hand(own, link, history.chosen(pose)) for own, history in otherwise(link)]
 
         def grows(joint: str) -> Scatter:
             return replace(force(joint), high=float(most(joint)[pose]))

@@ -234,7 +234,7 @@ def level_caveats(case: CoreCase) -> Iterator[Caveat]:
         what = reason("tests_of_level", tests=tuple(level.tests), level=level.title)
         yield Caveat(topic=Topic.LOADS, what=what, why=reason("alula_check_runs_tests", first=next(iter(level.tests))))
         return
-    if case.tests_alone and "load_cases" not in case.model_fields_set and "checks" in case.model_fields_set:
+    if "load_cases" not in case.model_fields_set and "checks" in case.model_fields_set:
         yield Caveat(topic=Topic.LOADS, what=reason("checks_of_case"), why=reason("tests_ask_their_own"))
     test = level.tests[level.test]
     most = test.decisive.most

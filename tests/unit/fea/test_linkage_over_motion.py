@@ -11,6 +11,7 @@ from alula.fea.common.scatter import Scatter
 from alula.fea.common.source import friction_source
 from alula.fea.motion import linkage_history
 from alula.fea.nonlinear.stability import SNAP
+from alula.geometry.base.errors import CannotRunError
 from alula.geometry.linkage.coordinate import Coordinate
 from alula.reports.sentences import told
 
@@ -89,3 +90,14 @@ def test_of_two_poses_the_one_counts_that_may_hold_less_with_what_eyes_do(monkey
         monkeypatch.setattr(linkage_history, "causes_over", lambda *_, share=share: rubbed(share))
         [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
         assert (found.value.value, found.value.low) == pytest.approx((value, low))
+
+    # An answer that cannot be told leaves the pose open, and does not take it away.
+    def lost(frame):
+        raise CannotRunError("no frame")
+
+    monkeypatch.setattr(linkage_history, "causes_over", lambda *_: rubbed((1.0, 1.0)))
+    monkeypatch.setattr(
+        linkage_history, "linkage_factor", lambda frame: lost(frame) if hasattr(frame.pose, "share") else factor(frame)
+    )
+    [found] = linkage_history.linkage_outcomes(moved, np.ones(2, dtype=bool))
+    assert (found.value.low, found.verdict.value) == (0.0, "undecided")
