@@ -18,7 +18,7 @@ from alula.fea.common.sought import LEFT
 from alula.fea.common.source import Source, SourceKind
 from alula.fea.common.verdict import Quantity, Subject, Verdict
 from alula.fea.doubts.play_doubt import play_at_joint
-from alula.fea.judging.connections import connection_factors, connection_outcome, least_factor, transmitted
+from alula.fea.judging.connections import _cards, connection_factors, connection_outcome, least_factor, transmitted
 from alula.fea.modes.connection_modes import ConnectionFactors, ConnectionMode
 from alula.fea.motion.envelope_outcomes import envelope_outcomes
 from alula.fea.motion.link_history import link_histories
@@ -29,6 +29,7 @@ from alula.geometry.base.errors import CaseError
 from alula.loads.case.case_file import validate
 from alula.loads.case.connection_rules import check_connection
 from alula.loads.records.check_spec import ConnectionCheck
+from alula.loads.records.conditions import Conditions
 from alula.loads.states.case_motion import solve_case_motion
 from alula.loads.states.play import Span
 from alula.reports.check.pins import pins_left_out
@@ -467,3 +468,15 @@ def test_glue_and_grips_are_as_stated_at_any_temperature():
 
     said = [" ".join(not_checked(caveats(connected(warm, at="A", **way)))) for way in ({"bond": SLEEVE}, {})]
     assert ["strength of glue, pressure and friction of hub are as stated" in one for one in said] == [True, False]
+
+
+def test_a_warm_cross_pin_of_drawn_wire_has_both_factors():
+    cross = {"cross_pin": {"diameter": "3 mm", "material": "steel-wire", "hub_diameter": "18 mm"}}
+    cold = connected(at="A", **cross)
+    card = cold.all_materials["steel-wire"].model_copy(update={"temperature_factors": ((20.0, 1.0), (300.0, 0.5))})
+    cold = cold.model_copy(update={"materials": {**cold.materials, "steel-wire": card}})
+    warm = cold.model_copy(update={"conditions": Conditions(temperature="300 degC")})
+    [one] = asked(cold, ConnectionCheck)
+    before, found = (_cards(case, one.check)["pin"].allowable for case in (cold, warm))
+    assert before < card.allowable
+    assert found == pytest.approx(0.5 * before)
